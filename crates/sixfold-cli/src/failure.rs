@@ -19,6 +19,11 @@ impl Failure {
         }
     }
 
+    /// Returns a failure for a backend that does not exist.
+    pub(crate) fn no_backend(name: &str) -> Self {
+        Self::usage(format!("no backend is called `{name}`"))
+    }
+
     /// Returns a failure for a mesh that `structure` cannot hold.
     pub(crate) fn cannot_hold(structure: &str, refusal: impl Display) -> Self {
         Self::unsupported(format!(

@@ -3,17 +3,12 @@
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
+use sixfold::algorithms::{Algorithms, AnyEditableMesh};
 use sixfold::io::WriteOptions;
-use sixfold::remeshing::{
-    Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, Target, decimate_watched,
-    remesh_watched,
-};
+use sixfold::remeshing::{Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, Target};
 use sixfold::repair::measures;
 use sixfold::spatial::{DistanceError, Sampling, mesh_distance};
-use sixfold::{
-    Creases, Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable,
-    structure_infos,
-};
+use sixfold::{Creases, Edit, PolygonMesh, QueryCost, StructureInfo, structure_infos};
 
 use crate::arguments::{Decimate, MeshInOut, ReadPolygons, Remesh, ShapeCheck};
 use crate::failure::Failure;
@@ -163,29 +158,35 @@ fn remesh_failure(error: RemeshError) -> Failure {
 }
 
 /// Prints a note if edits on the structure scan all faces and the mesh is large.
-fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
+fn warn_of_scans(backend: &str, faces: usize) {
     let scans = |edits: &[Option<QueryCost>]| {
         [Edit::CollapseEdge, Edit::BisectEdge, Edit::FlipEdge]
             .iter()
             .any(|&edit| edits[edit as usize] == Some(QueryCost::Scan))
     };
-    if faces < MIN_WARNED_FACES || !scans(&M::EDITS) {
+    let infos = structure_infos();
+    let is_slow = |info: &StructureInfo| info.name == backend && scans(&info.edits);
+    if faces < MIN_WARNED_FACES || !infos.iter().any(is_slow) {
         return;
     }
-    let infos = structure_infos().into_iter();
-    let others = infos.filter(|info| info.is_editable() && !scans(&info.edits));
+    let others = infos
+        .into_iter()
+        .filter(|info| info.is_editable() && !scans(&info.edits));
     let others: Vec<&str> = others.map(|info| info.name).collect();
     print_notice(&format!(
-        "note: {} scans all {} faces for each edit, so this command is slow. Faster choices for \
+        "note: {backend} scans all {} faces for each edit, so this command is slow. Faster choices for \
          --backend: {}",
-        M::NAME,
         grouped(faces),
         others.join(", ")
     ));
 }
 
 trait Work {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError>;
+    fn run(
+        &self,
+        mesh: &mut dyn AnyEditableMesh,
+        backend: &str,
+    ) -> Result<EditSummary, RemeshError>;
 }
 
 struct EditSummary {
@@ -195,11 +196,15 @@ struct EditSummary {
 }
 
 impl Work for Decimation {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError> {
+    fn run(
+        &self,
+        mesh: &mut dyn AnyEditableMesh,
+        backend: &str,
+    ) -> Result<EditSummary, RemeshError> {
         let before = mesh.face_count();
         let target = self.target.face_count(before)?;
         let bar = StepBar::new(before.saturating_sub(target), "faces removed");
-        let report = decimate_watched(mesh, self, &mut |faces| {
+        let report = mesh.decimate(self, &mut |faces| {
             bar.set_done(before.saturating_sub(faces));
             ControlFlow::Continue(())
         });
@@ -224,16 +229,20 @@ impl Work for Decimation {
         });
         let edits = counted(report.collapses, "edge", "edges");
         Ok(EditSummary {
-            edits: format!("{edits} collapsed on {}", M::NAME),
+            edits: format!("{edits} collapsed on {backend}"),
             shortfall,
         })
     }
 }
 
 impl Work for Remeshing {
-    fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError> {
+    fn run(
+        &self,
+        mesh: &mut dyn AnyEditableMesh,
+        backend: &str,
+    ) -> Result<EditSummary, RemeshError> {
         let bar = StepBar::new(self.iterations, "iterations");
-        let report = remesh_watched(mesh, self, &mut |done| {
+        let report = mesh.remesh(self, &mut |done| {
             bar.set_done(done);
             ControlFlow::Continue(())
         });
@@ -252,9 +261,8 @@ impl Work for Remeshing {
         let flips = counted(report.flips, "flip", "flips");
         Ok(EditSummary {
             edits: format!(
-                "edge length {}: {splits}, {collapses} and {flips} in {iterations} on {}",
-                figure(self.edge_length),
-                M::NAME
+                "edge length {}: {splits}, {collapses} and {flips} in {iterations} on {backend}",
+                figure(self.edge_length)
             ),
             shortfall,
         })
@@ -263,23 +271,17 @@ impl Work for Remeshing {
 
 /// Does the work on the structure called `backend`.
 fn edited_by(backend: &str, polygons: &PolygonMesh, work: &impl Work) -> Edited {
-    for_each_editable!(M => {
-        if backend == M::NAME {
-            return edited::<M>(polygons, work);
-        }
-    });
-    Err(Failure::unsupported(not_editable(backend)))
+    let mesh = Algorithms::find(backend)
+        .ok_or_else(|| Failure::no_backend(backend))?
+        .build_editable(polygons);
+    let mesh = mesh.ok_or_else(|| Failure::unsupported(not_editable(backend)))?;
+    let mut mesh = mesh.map_err(|refusal| {
+        let refusal = format!("{backend} cannot hold the mesh: {refusal}");
+        Failure::cannot_hold(backend, refusal)
+    })?;
+    warn_of_scans(backend, polygons.face_count());
+    let summary = work.run(&mut *mesh, backend).map_err(remesh_failure)?;
+    Ok((mesh.to_polygons(), summary))
 }
 
 type Edited = Result<(PolygonMesh, EditSummary), Failure>;
-
-fn edited<M: Representation + MeshEdit>(polygons: &PolygonMesh, work: &impl Work) -> Edited {
-    let mesh = M::from_polygons(polygons);
-    let mut mesh = mesh.map_err(|refusal| {
-        let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
-        Failure::cannot_hold(M::NAME, refusal)
-    })?;
-    warn_of_scans::<M>(polygons.face_count());
-    let summary = work.run(&mut mesh).map_err(remesh_failure)?;
-    Ok((mesh.to_polygons(), summary))
-}

@@ -2,10 +2,11 @@
 
 use std::process::ExitCode;
 
+use sixfold::algorithms::{Algorithms, AnyMesh, SmoothError};
 use sixfold::io::WriteOptions;
-use sixfold::operators::{DualError, Smoothing, SmoothingError, dual, smoothed};
+use sixfold::operators::{DualError, Smoothing, SmoothingError};
 use sixfold::repair::{Components, FaultKind, Step, diagnose, repair};
-use sixfold::{Creases, PolygonMesh, Representation, Visitor, visit};
+use sixfold::{Creases, PolygonMesh};
 
 use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate, repair_options};
 use crate::failure::Failure;
@@ -18,18 +19,20 @@ use crate::text::{TextOutput, print_notice, sanitize};
 use sixfold_study::numbers::counted;
 
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
-    let work = SmoothWork(Smoothing {
+    let smoothing = Smoothing {
         weights: arguments.weights,
         boundary: arguments.boundary,
         step: arguments.step,
         step_back: arguments.step_back,
         iterations: arguments.iterations,
-    });
+    };
     let mut before = PolygonMesh::default();
     let after = reshape_file(&arguments.files, arguments.read, "smoothed", |polygons| {
         let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
         (before, _) = without_seams(mesh, polygons, Creases::default(), files);
-        on_backend(&arguments.backend, &before, &work)
+        let mut mesh = build(&arguments.backend, &before)?;
+        mesh.smooth(&smoothing).map_err(smoothing_failure)?;
+        Ok(mesh.to_polygons())
     })?;
     Ok(check_shape(
         &before,
@@ -45,7 +48,8 @@ pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
         before = polygons.face_count();
         let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
         let (polygons, _) = without_seams(mesh, polygons, Creases::default(), files);
-        on_backend(&arguments.backend, &polygons, &DualWork(&polygons))
+        let mesh = build(&arguments.backend, &polygons)?;
+        mesh.dual().map_err(|error| dual_failure(error, &polygons))
     })?;
     Ok(check_faces(before, &after, &arguments.files.output))
 }
@@ -98,67 +102,39 @@ fn reshape_file(
     Ok(changed)
 }
 
-trait Work {
-    fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure>;
-}
-
-struct SmoothWork(Smoothing);
-
-impl Work for SmoothWork {
-    fn run<M: Representation>(&self, mut mesh: M) -> Result<PolygonMesh, Failure> {
-        let positions = smoothed(&mesh, &self.0).map_err(|error| match error {
-            SmoothingError::Step { .. } | SmoothingError::StepBack { .. } => Failure::usage(error),
-            _ => Failure::unsupported(error),
-        })?;
-        mesh.set_positions(&positions)
-            .map_err(Failure::unsupported)?;
-        Ok(mesh.to_polygons())
-    }
-}
-
-struct DualWork<'a>(&'a PolygonMesh);
-
-impl Work for DualWork<'_> {
-    fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure> {
-        dual(&mesh).map_err(|error| match error {
-            DualError::BoundaryEdge { .. } => {
-                let steps = diagnose(self.0, 0).repairs(FaultKind::BoundaryEdge);
-                let closes = match repair_options(&steps) {
-                    none if none.is_empty() => String::new(),
-                    options => format!(
-                        ". `sixfold repair {options}` closes a solid; a surface with a rim, such \
-                         as a plane, stays open"
-                    ),
-                };
-                Failure::unsupported(format!("{error}{closes}"))
-            }
-            _ => Failure::unsupported(error),
+/// Builds the structure called `backend`.
+fn build(backend: &str, polygons: &PolygonMesh) -> Result<Box<dyn AnyMesh>, Failure> {
+    Algorithms::find(backend)
+        .ok_or_else(|| Failure::no_backend(backend))?
+        .build(polygons)
+        .map_err(|refusal| {
+            let refusal = format!("{backend} cannot hold the mesh: {refusal}");
+            Failure::cannot_hold(backend, refusal)
         })
+}
+
+fn smoothing_failure(error: SmoothError) -> Failure {
+    match error {
+        SmoothError::Smoothing(SmoothingError::Step { .. } | SmoothingError::StepBack { .. }) => {
+            Failure::usage(error)
+        }
+        _ => Failure::unsupported(error),
     }
 }
 
-fn on_backend(
-    backend: &str,
-    polygons: &PolygonMesh,
-    work: &impl Work,
-) -> Result<PolygonMesh, Failure> {
-    struct Job<'a, W>(&'a PolygonMesh, &'a W);
-
-    impl<W: Work> Visitor for Job<'_, W> {
-        type Output = Result<PolygonMesh, Failure>;
-
-        fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-            let mesh = M::from_polygons(self.0);
-            let mesh = mesh.map_err(|refusal| {
-                let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
-                Failure::cannot_hold(M::NAME, refusal)
-            })?;
-            self.1.run(mesh)
+fn dual_failure(error: DualError, polygons: &PolygonMesh) -> Failure {
+    match error {
+        DualError::BoundaryEdge { .. } => {
+            let steps = diagnose(polygons, 0).repairs(FaultKind::BoundaryEdge);
+            let closes = match repair_options(&steps) {
+                none if none.is_empty() => String::new(),
+                options => format!(
+                    ". `sixfold repair {options}` closes a solid; a surface with a rim, such as a \
+                     plane, stays open"
+                ),
+            };
+            Failure::unsupported(format!("{error}{closes}"))
         }
-    }
-
-    match visit(backend, &mut Job(polygons, work)) {
-        Some(done) => done,
-        None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
+        _ => Failure::unsupported(error),
     }
 }

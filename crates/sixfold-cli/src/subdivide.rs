@@ -10,14 +10,10 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPoolBuilder;
+use sixfold::algorithms::Algorithms;
 use sixfold::io::{WriteOptions, read_creases, write_creases};
-use sixfold::subdivision::{
-    BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide_native_watched,
-    subdivide_watched,
-};
-use sixfold::{
-    Creases, PolygonMesh, Refine, Representation, Visitor, for_each_refinable, support, visit,
-};
+use sixfold::subdivision::{BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError};
+use sixfold::{Creases, PolygonMesh, support};
 
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
@@ -73,17 +69,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     let limit = arguments.limit.as_ref().map(open).transpose()?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
     text.print_line(&forecast.describe());
-    let mut job = Job {
-        subdivision,
-        method,
-        polygons: &polygons,
-        creases: &creases,
-        levels: arguments.levels,
-        bar: FaceBar::new(forecast.new_faces()),
-        finished: Vec::new(),
-    };
-    let step = job.run(&arguments.backend, arguments.threads.unwrap_or(0))?;
-    for level in &job.finished {
+    let bar = FaceBar::new(forecast.new_faces());
+    let (step, finished) = refine(arguments, &subdivision, method, &polygons, &creases, &bar)?;
+    for level in &finished {
         text.print_line(&level.describe());
     }
     // Compute the limits before writing, so that either all files are written or none.
@@ -185,7 +173,7 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     } = arguments;
     let rows = support(*scheme);
     let row = rows.iter().find(|row| row.backend == backend);
-    let row = row.ok_or_else(|| Failure::usage(format!("no backend is called `{backend}`")))?;
+    let row = row.ok_or_else(|| Failure::no_backend(backend))?;
     let names: Vec<&str> = row.methods.iter().map(|method| method.name()).collect();
     let names = names.join(" or ");
     if arguments.levels > 1 && !row.holds_result {
@@ -214,17 +202,6 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     }
 }
 
-/// A subdivision on a structure that is selected at run time.
-struct Job<'a> {
-    subdivision: Subdivision,
-    method: Method,
-    polygons: &'a PolygonMesh,
-    creases: &'a Creases,
-    levels: u32,
-    bar: FaceBar,
-    finished: Vec<FinishedLevel>,
-}
-
 struct FinishedLevel {
     level: u32,
     faces: usize,
@@ -241,86 +218,48 @@ impl FinishedLevel {
     }
 }
 
-impl Job<'_> {
-    fn run(&mut self, backend: &str, threads: usize) -> Result<Step, Failure> {
-        let done = match self.method {
-            Method::Native => {
-                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-                let pool = pool.map_err(|error| {
-                    Failure::usage(format!(
-                        "{threads} threads cannot be started ({error}): choose fewer --threads"
-                    ))
-                })?;
-                pool.install(|| self.run_native(backend))
-            }
-            _ => visit(backend, self),
-        };
-        self.bar.clear();
-        match done {
-            Some(Ok(step)) => Ok(step),
-            Some(Err(refusal @ SubdivisionError::Build { structure, .. })) => {
-                Err(Failure::cannot_hold(structure, refusal))
-            }
-            Some(Err(refusal)) => Err(Failure::unsupported(refusal)),
-            None => Err(Failure::usage(format!("no backend is called `{backend}`"))),
+/// Runs the subdivision. Returns the result, and the time of each level.
+fn refine(
+    arguments: &Subdivide,
+    subdivision: &Subdivision,
+    method: Method,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    bar: &FaceBar,
+) -> Result<(Step, Vec<FinishedLevel>), Failure> {
+    let (backend, threads) = (&arguments.backend, arguments.threads.unwrap_or(0));
+    let algorithms = Algorithms::find(backend).ok_or_else(|| Failure::no_backend(backend))?;
+    let mut finished = Vec::new();
+    let mut start = Instant::now();
+    let mut watch = |level, faces| {
+        let time = start.elapsed();
+        bar.add_level(level, faces);
+        finished.push(FinishedLevel { level, faces, time });
+        start = Instant::now();
+        ControlFlow::Continue(())
+    };
+    let mut run = || {
+        let levels = arguments.levels;
+        algorithms.subdivide(subdivision, method, polygons, creases, levels, &mut watch)
+    };
+    let done = match method {
+        Method::Native => {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+            let pool = pool.map_err(|error| {
+                Failure::usage(format!(
+                    "{threads} threads cannot be started ({error}): choose fewer --threads"
+                ))
+            })?;
+            pool.install(run)
         }
-    }
-
-    /// Splits the tables of the structure called `backend`; `None` if it cannot, or does not exist.
-    fn run_native(&mut self, backend: &str) -> Option<Result<Step, SubdivisionError>> {
-        for_each_refinable!(M => {
-            if backend == M::NAME {
-                return Some(self.refine::<M>());
-            }
-        });
-        None
-    }
-
-    fn refine<M: Refine>(&mut self) -> Result<Step, SubdivisionError> {
-        let mut watch = Self::record_levels(&self.bar, &mut self.finished);
-        let Self {
-            polygons,
-            creases,
-            levels,
-            ..
-        } = *self;
-        subdivide_native_watched::<M>(&self.subdivision, polygons, creases, levels, &mut watch)
-    }
-
-    fn record_levels<'b>(
-        bar: &'b FaceBar,
-        finished: &'b mut Vec<FinishedLevel>,
-    ) -> impl FnMut(u32, usize) -> ControlFlow<()> + 'b {
-        let mut start = Instant::now();
-        move |level, faces| {
-            let time = start.elapsed();
-            bar.add_level(level, faces);
-            finished.push(FinishedLevel { level, faces, time });
-            start = Instant::now();
-            ControlFlow::Continue(())
+        _ => run(),
+    };
+    bar.clear();
+    match done {
+        Ok(step) => Ok((step, finished)),
+        Err(refusal @ SubdivisionError::Build { structure, .. }) => {
+            Err(Failure::cannot_hold(structure, refusal))
         }
-    }
-}
-
-impl Visitor for Job<'_> {
-    type Output = Result<Step, SubdivisionError>;
-
-    fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        let mut watch = Self::record_levels(&self.bar, &mut self.finished);
-        let Self {
-            method,
-            polygons,
-            creases,
-            levels,
-            ..
-        } = *self;
-        subdivide_watched::<M>(
-            &self.subdivision,
-            method,
-            polygons,
-            creases,
-            levels,
-            &mut watch,
-        )
+        Err(refusal) => Err(Failure::unsupported(refusal)),
     }
 }

@@ -305,6 +305,8 @@ pub use sixfold_spatial as spatial;
 #[doc(inline)]
 pub use sixfold_subdivision as subdivision;
 
+#[cfg(feature = "algorithms")]
+pub mod algorithms;
 mod structure_list;
 mod support;
 

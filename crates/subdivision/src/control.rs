@@ -6,6 +6,7 @@ use sixfold_core::{
 
 use crate::error::SubdivisionError;
 use crate::options::BoundaryRule;
+use crate::step::Step;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
@@ -48,6 +49,25 @@ impl Subdivision {
         let welded = mesh.to_polygons();
         let creases = renumbered(mesh, polygons, creases);
         Ok(self.sharpened::<M>(&welded, &creases))
+    }
+
+    /// Returns the creases of `mesh`, which was built from the result of the steps before `level`: those
+    /// of the control mesh before the first step, which has level 0, and the creases of `step` in the
+    /// numbers of `mesh` later.
+    ///
+    /// # Errors
+    ///
+    /// Fails like [`control_creases`](Self::control_creases).
+    pub fn level_creases<M: Representation>(
+        &self,
+        mesh: &M,
+        step: &Step,
+        level: u32,
+    ) -> Result<Creases, SubdivisionError> {
+        match level {
+            0 => self.control_creases(mesh, &step.polygons, &step.creases),
+            _ => Ok(renumbered(mesh, &step.polygons, &step.creases)),
+        }
     }
 
     /// Returns `creases` with the elements that become sharp because of the topology.

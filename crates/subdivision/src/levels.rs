@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use sixfold_core::{Creases, FaceId, FaceList, PolygonMesh, Refine, Representation, VertexId};
 
-use crate::control::renumbered;
 use crate::error::SubdivisionError;
 use crate::scheme::Method;
 use crate::step::Step;
@@ -43,38 +42,57 @@ pub fn subdivide_watched<M: Representation>(
     levels: u32,
     watch: &mut dyn FnMut(u32, usize) -> ControlFlow<()>,
 ) -> Result<Step, SubdivisionError> {
-    let mut step = Step {
+    subdivide_by(
+        subdivision,
+        polygons,
+        creases,
+        levels,
+        watch,
+        &mut |step, level| {
+            let mesh = build_level::<M>(&step.polygons, level)?;
+            let creases = subdivision.level_creases(&mesh, step, level)?;
+            subdivision.step(method, &mesh, &creases, level)
+        },
+    )
+}
+
+/// Subdivides like [`subdivide_watched`], by steps of the caller. `step` gets the mesh before a step
+/// and the level of the step, from 0, and returns the mesh after the step.
+///
+/// # Errors
+///
+/// Returns the first error of `step`, and [`SubdivisionError::Stopped`] if `watch` returns
+/// `ControlFlow::Break`.
+pub fn subdivide_by(
+    subdivision: &Subdivision,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+    watch: &mut dyn FnMut(u32, usize) -> ControlFlow<()>,
+    step: &mut dyn FnMut(&Step, u32) -> Result<Step, SubdivisionError>,
+) -> Result<Step, SubdivisionError> {
+    let mut last = Step {
         polygons: polygons.clone(),
         creases: creases.clone(),
     };
     if levels == 0 {
-        return Ok(step);
+        return Ok(last);
     }
     let mut left_out = subdivision.left_out(polygons, creases);
     for level in 0..levels {
-        let mesh = build_level::<M>(&step.polygons, level)?;
-        let creases = if level == 0 {
-            subdivision.control_creases(&mesh, &step.polygons, &step.creases)?
-        } else {
-            renumbered(&mesh, &step.polygons, &step.creases)
-        };
-        let next = match method {
-            Method::Gather => subdivision.gather(&mesh, &creases, level)?,
-            Method::Scatter => subdivision.scatter(&mesh, &creases, level)?,
-            Method::Native => return Err(subdivision.native_error()),
-        };
+        let next = step(&last, level)?;
         // The parts of one face are consecutive.
         left_out = left_out.map(|left_out| {
-            let degrees = step.polygons.faces().iter().map(|(_, face)| face.len());
+            let degrees = last.polygons.faces().iter().map(|(_, face)| face.len());
             let parts = degrees.map(|degree| subdivision.parts_of(degree));
             let each = left_out.into_iter().zip(parts);
             each.flat_map(|(out, parts)| std::iter::repeat_n(out, parts))
                 .collect()
         });
-        step = next;
-        report_level(watch, level + 1, step.polygons.face_count())?;
+        last = next;
+        report_level(watch, level + 1, last.polygons.face_count())?;
     }
-    Ok(without_faces(step, left_out))
+    Ok(without_faces(last, left_out))
 }
 
 /// Builds a structure of type `M` once, and runs `levels` steps that split the tables of the

@@ -53,7 +53,8 @@ pub use curve::{Ends, chaikin, cubic_b_spline, cubic_b_spline_at};
 pub use error::{CurveError, LocalError, SubdivisionError};
 pub use extent::Extent;
 pub use levels::{
-    build_level, subdivide, subdivide_native, subdivide_native_watched, subdivide_watched,
+    build_level, subdivide, subdivide_by, subdivide_native, subdivide_native_watched,
+    subdivide_watched,
 };
 pub use limit::{LimitNormal, LimitPoint, NoLimit};
 pub use local::{LocalMesh, refine_locally};

@@ -5,7 +5,7 @@ use sixfold_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, Split, Vert
 use crate::SubdivisionError;
 
 /// The result of one step: the refined mesh, and the creases of the refined mesh.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Step {
     /// The refined mesh. With the methods gather and scatter, the new faces that are made from one
     /// old face are consecutive.

@@ -96,6 +96,27 @@ impl Subdivision {
         })
     }
 
+    /// Runs one step with the method gather or scatter. `creases` and `level` have the same meaning as
+    /// in [`gather`](Self::gather).
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the scheme cannot split the mesh, if it does not have the method, and for
+    /// [`Method::Native`], which [`refine_into`](Self::refine_into) runs.
+    pub fn step<M: MeshQuery>(
+        &self,
+        method: Method,
+        mesh: &M,
+        creases: &Creases,
+        level: u32,
+    ) -> Result<Step, SubdivisionError> {
+        match method {
+            Method::Gather => self.gather(mesh, creases, level),
+            Method::Scatter => self.scatter(mesh, creases, level),
+            Method::Native => Err(self.native_error()),
+        }
+    }
+
     /// Runs one step with the method native: splits the tables of the structure, and stores the
     /// result in `child`. Returns the creases of `child`. The tables of `child` are reused if the
     /// tables are large enough. With the feature `rayon`, the step runs on the threads of the

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
-use sixfold::subdivision::Method;
+use sixfold::algorithms::Algorithms;
 use sixfold::{
-    BuildError, Creases, MemoryFootprint, MeshEdit, PolygonMesh, Refine, Relation, Representation,
+    BuildError, MemoryFootprint, MeshEdit, PolygonMesh, Refine, Relation, Representation,
     StructureInfo,
 };
 use sixfold_core::{Counts, Measured};
@@ -21,7 +21,6 @@ use crate::mix::{
 };
 use crate::reads::{ReadsObserver, count};
 use crate::single_edit::{SingleEdit, prepare_single};
-use crate::subdivision_job::{PreparedRefiner, SubdivisionJob, prepare_native, prepare_rebuilt};
 use crate::timed_structure::TimedStructure;
 
 /// A mesh data structure with functions that build, run and measure the structure.
@@ -49,8 +48,8 @@ pub struct Backend {
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) queries: QueryFunctions,
     pub(crate) edits: Option<EditFunctions>,
-    /// Sets up a subdivision that refines the structure's own tables.
-    prepare_native: Option<PrepareRefiner>,
+    /// Subdivision, which is compiled once for each structure, also for the commands.
+    pub(crate) algorithms: Algorithms,
 }
 
 /// The functions that need only queries.
@@ -61,8 +60,6 @@ pub(crate) struct QueryFunctions {
     count: Count,
     pub(crate) prepare_mix: for<'a> fn(&MixInput<'a>) -> PreparedMix<'a>,
     pub(crate) tabulate: Tabulate,
-    /// Sets up a subdivision that rebuilds the structure from each level.
-    prepare_rebuilt: PrepareRefiner,
 }
 
 /// The functions that need edits.
@@ -72,37 +69,6 @@ pub(crate) struct EditFunctions {
     pub(crate) prepare_pass: fn(EditPass, &PolygonMesh) -> PreparedEditor,
     pub(crate) prepare_single: fn(SingleEdit, &PolygonMesh) -> PreparedEditor,
     pub(crate) decimated_counts: fn(&PolygonMesh, f64) -> Option<Counts>,
-    /// Sets up a subdivision that rebuilds the editable type from each level.
-    prepare_rebuilt: PrepareRefiner,
-}
-
-/// The functions with which a study runs operations that make a mesh, for one type of a structure:
-/// the type that only answers queries, or the editable type.
-#[derive(Clone, Copy)]
-pub(crate) struct TypeFunctions {
-    prepare_rebuilt: PrepareRefiner,
-    prepare_native: Option<PrepareRefiner>,
-    /// Whether the read-only form of the structure has a native method, but this type, the editable
-    /// form, has none.
-    pub(crate) only_read_only_is_native: bool,
-    /// Sets up a pass of edits; `None` if the structure cannot be edited.
-    pub(crate) prepare_pass: Option<fn(EditPass, &PolygonMesh) -> PreparedEditor>,
-}
-
-impl TypeFunctions {
-    /// Sets up a subdivision; `None` if the type does not support this way.
-    pub(crate) fn prepare_refiner(
-        &self,
-        job: SubdivisionJob,
-        polygons: &PolygonMesh,
-        creases: &Creases,
-    ) -> Option<PreparedRefiner> {
-        let prepare = match job.way.method() {
-            Method::Native => self.prepare_native?,
-            Method::Gather | Method::Scatter => self.prepare_rebuilt,
-        };
-        Some(prepare(job, polygons, creases))
-    }
 }
 
 /// Builds the structure and prepares it for measurement.
@@ -115,14 +81,17 @@ type Count =
 type Tabulate =
     for<'a> fn(&'a PolygonMesh, &'a Schedule, &'a Route) -> Option<Box<dyn MixBackend + 'a>>;
 
-type PrepareRefiner = fn(SubdivisionJob, &PolygonMesh, &Creases) -> PreparedRefiner;
-
 /// A structure that is ready to be measured, with the bytes of its tables.
 pub type Prepared<'a> = (Box<dyn TimedBackend + 'a>, MemoryFootprint);
 
 impl Backend {
     /// Makes a backend for the structure `M`, without edits and without native subdivision.
     pub fn new<M: Measured + 'static>() -> Self {
+        Self::with_algorithms::<M>(Algorithms::new::<M>())
+    }
+
+    /// Makes a backend for the structure `M` with compiled algorithms.
+    fn with_algorithms<M: Measured + 'static>(algorithms: Algorithms) -> Self {
         Self {
             info: StructureInfo::new::<M>(),
             layout_bytes: M::layout_bytes,
@@ -130,9 +99,7 @@ impl Backend {
                 build: |backend, polygons, draw| {
                     let mesh = M::from_polygons(polygons)?;
                     let memory = mesh.memory();
-                    let functions = backend.query_functions();
-                    let timed =
-                        TimedStructure::new(backend.name(), functions, polygons, draw, mesh);
+                    let timed = TimedStructure::new(*backend, polygons, draw, mesh);
                     Ok((Box::new(timed), memory))
                 },
                 measure_memory: measure_memory::<M>,
@@ -142,10 +109,9 @@ impl Backend {
                 },
                 prepare_mix: prepare_query_mix::<M>,
                 tabulate: tabulate_structure::<M>,
-                prepare_rebuilt: prepare_rebuilt::<M>,
             },
             edits: None,
-            prepare_native: None,
+            algorithms,
         }
     }
 
@@ -157,7 +123,6 @@ impl Backend {
             prepare_pass: prepare_pass::<M>,
             prepare_single: prepare_single::<M>,
             decimated_counts: decimated_counts::<M>,
-            prepare_rebuilt: prepare_rebuilt::<M>,
         };
         Self {
             info: self.info.with_edits::<M>(),
@@ -172,7 +137,7 @@ impl Backend {
     pub fn with_refinement<M: Refine + 'static>(self) -> Self {
         Self {
             info: self.info.with_refinement::<M>(),
-            prepare_native: Some(prepare_native::<M>),
+            algorithms: self.algorithms.with_refinement::<M>(),
             ..self
         }
     }
@@ -182,11 +147,17 @@ impl Backend {
     pub fn structures() -> Vec<Self> {
         macro_rules! backends {
             ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
-                vec![$(
-                    Backend::new::<$query>()
-                        $(.with_edits::<$edit>())?
-                        $(.with_refinement::<$refine>())?
-                ),+]
+                vec![$({
+                    let algorithms = Algorithms::find(<$query as Representation>::NAME);
+                    let algorithms = algorithms.expect("the list of algorithms has every structure");
+                    let backend = Backend::with_algorithms::<$query>(algorithms);
+                    $(let backend = backend.with_edits::<$edit>();)?
+                    $(let backend = Backend {
+                        info: backend.info.with_refinement::<$refine>(),
+                        ..backend
+                    };)?
+                    backend
+                }),+]
             };
         }
         sixfold::structures!([backends])
@@ -197,29 +168,6 @@ impl Backend {
     pub fn find(name: &str) -> Option<Self> {
         let mut all = Self::structures().into_iter();
         all.find(|backend| backend.name() == name)
-    }
-
-    /// Returns the functions of the type that only answers queries. Its edits run on the editable
-    /// type.
-    pub(crate) fn query_functions(&self) -> TypeFunctions {
-        TypeFunctions {
-            prepare_rebuilt: self.queries.prepare_rebuilt,
-            prepare_native: self.prepare_native,
-            only_read_only_is_native: false,
-            prepare_pass: self.edits.map(|edits| edits.prepare_pass),
-        }
-    }
-
-    /// Returns the functions of the editable type; `None` if the structure cannot be edited. This
-    /// type cannot refine its own tables.
-    pub(crate) fn edit_functions(&self) -> Option<TypeFunctions> {
-        let edits = self.edits?;
-        Some(TypeFunctions {
-            prepare_rebuilt: edits.prepare_rebuilt,
-            prepare_native: None,
-            only_read_only_is_native: self.prepare_native.is_some(),
-            prepare_pass: Some(edits.prepare_pass),
-        })
     }
 
     /// Builds the structure from `polygons` and prepares it for measurement. With `draw` (the

@@ -215,14 +215,16 @@ impl<T> ReusedCopies<T> {
         time.scaled(f64::from(series.runs) / f64::from(enough.runs))
     }
 
-    /// Returns the time of the timed runs, on as many copies as [`copy_count`] allows.
+    /// Returns the time of the timed runs, on as many copies as [`copy_count`] allows. The functions are
+    /// called by their addresses, which takes nothing beside a run, so that this code is compiled once
+    /// for each type of copies.
     fn run_all(
         &mut self,
         series: &Series<'_>,
         bytes: usize,
-        new: &impl Fn() -> T,
-        reset: &mut impl FnMut(&mut T),
-        run: &mut impl FnMut(&mut T),
+        new: &dyn Fn() -> T,
+        reset: &mut dyn FnMut(&mut T),
+        run: &mut dyn FnMut(&mut T),
     ) -> Time {
         let fresh = matches!(series.start, Start::FreshPages);
         let mut total = Time::zero_like(series.clock.now());

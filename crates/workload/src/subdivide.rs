@@ -8,7 +8,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use sixfold::subdivision::{FaceKind, SubdivisionError};
 use sixfold::{Creases, Point, PolygonMesh, VertexId};
 
-use crate::backend::TypeFunctions;
+use crate::backend::Backend;
 use crate::job::{Outcome, Run};
 use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
@@ -29,34 +29,28 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
 /// Set-up is not timed. In native subdivisions, the untimed runs make the tables that later runs
 /// reuse. The other methods build their structures within the timing.
 pub(crate) fn subdivide(
-    functions: &TypeFunctions,
+    backend: &Backend,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Run {
     // Clock, caches and page faults then belong to the thread of the pool.
     let on_thread =
-        |pool: &ThreadPool| pool.install(|| set_up_and_run(functions, job, polygons, series));
+        |pool: &ThreadPool| pool.install(|| set_up_and_run(backend, job, polygons, series));
     one_thread_pool()
         .and_then(on_thread)
         .unwrap_or_else(|refusal| Run::refused(refusal, series))
 }
 
 fn set_up_and_run(
-    functions: &TypeFunctions,
+    backend: &Backend,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Result<Run, String> {
     check_degrees(job, polygons).map_err(|error| error.to_string())?;
-    let refiner = functions.prepare_refiner(job, polygons, &Creases::default());
-    let refiner = refiner.ok_or(match functions.only_read_only_is_native {
-        true => {
-            "its editable form has no native method: only its read-only form can split its own \
-             tables"
-        }
-        false => "it has no native method: it cannot split its own tables",
-    })?;
+    let refiner = job.prepare(backend, polygons, &Creases::default());
+    let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
     let mut refiner = refiner.map_err(|error| error.to_string())?;
     let mut done = Ok(());
     let time = series.time_together(|| {

@@ -1,9 +1,8 @@
 //! A subdivision that can be timed: a scheme, a way to run the scheme, and a number of levels.
 
-use sixfold::subdivision::{
-    Method, Scheme, Subdivision, SubdivisionError, build_level, renumbered,
-};
-use sixfold::{Creases, Point, PolygonMesh, Refine, Representation};
+use sixfold::algorithms::{Algorithms, AnyMesh, NativeLevels};
+use sixfold::subdivision::{Method, Scheme, Step, Subdivision, SubdivisionError};
+use sixfold::{Creases, Point, PolygonMesh};
 
 use crate::backend::Backend;
 
@@ -83,128 +82,108 @@ impl SubdivisionJob {
         polygons: &PolygonMesh,
         creases: &Creases,
     ) -> Option<PreparedRefiner> {
-        let functions = backend.query_functions();
-        functions.prepare_refiner(self, polygons, creases)
-    }
-
-    fn control_mesh<M: Representation>(
-        &self,
-        polygons: &PolygonMesh,
-        creases: &Creases,
-    ) -> Result<(M, Creases), SubdivisionError> {
-        let mesh = build_level::<M>(polygons, 0)?;
-        let creases = self.subdivision.control_creases(&mesh, polygons, creases)?;
-        Ok((mesh, creases))
+        prepare(self, &backend.algorithms, polygons, creases)
     }
 }
 
 /// A subdivision that is ready to run, or the reason why the subdivision cannot run.
 pub type PreparedRefiner = Result<Box<dyn Refiner>, SubdivisionError>;
 
-/// Sets up `job` on `M`. The structure is rebuilt for each level.
-pub(crate) fn prepare_rebuilt<M: Representation + 'static>(
+/// Sets up `job` on a structure; `None` if the structure does not support this way to subdivide.
+pub(crate) fn prepare(
     job: SubdivisionJob,
+    algorithms: &Algorithms,
     polygons: &PolygonMesh,
     creases: &Creases,
-) -> PreparedRefiner {
-    let (mesh, creases) = job.control_mesh::<M>(polygons, creases)?;
-    Ok(Box::new(Rebuilt {
-        job,
-        mesh,
-        creases,
-        last: PolygonMesh::default(),
-    }))
-}
-
-/// Sets up `job` on `M`. The tables of the structure are refined.
-pub(crate) fn prepare_native<M: Refine + 'static>(
-    job: SubdivisionJob,
-    polygons: &PolygonMesh,
-    creases: &Creases,
-) -> PreparedRefiner {
-    let (mesh, creases) = job.control_mesh::<M>(polygons, creases)?;
-    Ok(Box::new(InPlace {
-        job,
-        mesh,
-        creases,
-        levels: Vec::new(),
-        numbers: M::EdgeNumbers::default(),
-    }))
+) -> Option<PreparedRefiner> {
+    if job.way.method() == Method::Native {
+        let levels = algorithms.prepare_native(&job.subdivision, polygons, creases)?;
+        return Some(levels.map(|levels| Box::new(InPlace { job, levels }) as Box<dyn Refiner>));
+    }
+    let rebuilt = Rebuilt::new(job, *algorithms, polygons, creases);
+    Some(rebuilt.map(|rebuilt| Box::new(rebuilt) as Box<dyn Refiner>))
 }
 
 /// Computes each level as polygons and builds the structure from the polygons.
-struct Rebuilt<M> {
+struct Rebuilt {
     job: SubdivisionJob,
-    mesh: M,
+    algorithms: Algorithms,
+    mesh: Box<dyn AnyMesh>,
     creases: Creases,
     /// The polygons of the last level. The structure may have merged vertices.
-    last: PolygonMesh,
+    last: Step,
 }
 
-impl<M: Representation + 'static> Refiner for Rebuilt<M> {
+impl Rebuilt {
+    fn new(
+        job: SubdivisionJob,
+        algorithms: Algorithms,
+        polygons: &PolygonMesh,
+        creases: &Creases,
+    ) -> Result<Self, SubdivisionError> {
+        let mesh = algorithms.build_level(polygons, 0)?;
+        let control = Step {
+            polygons: polygons.clone(),
+            creases: creases.clone(),
+        };
+        Ok(Self {
+            creases: mesh.creases(&job.subdivision, &control, 0)?,
+            mesh,
+            job,
+            algorithms,
+            last: Step::default(),
+        })
+    }
+}
+
+impl Refiner for Rebuilt {
     fn run(&mut self) -> Result<(), SubdivisionError> {
-        let subdivision = &self.job.subdivision;
+        let SubdivisionJob {
+            subdivision,
+            way,
+            levels,
+        } = self.job;
         let mut creases = self.creases.clone();
         // Drop the previous result, so that all runs do the same work.
-        self.last = PolygonMesh::default();
-        let mut finest: Option<M> = None;
-        for level in 0..self.job.levels {
+        self.last = Step::default();
+        let mut finest: Option<Box<dyn AnyMesh>> = None;
+        for level in 0..levels {
             let mesh = finest.as_ref().unwrap_or(&self.mesh);
-            let step = match self.job.way {
-                Way::Gather => subdivision.gather(mesh, &creases, level)?,
-                _ => subdivision.scatter(mesh, &creases, level)?,
-            };
-            let next = build_level::<M>(&step.polygons, level + 1)?;
-            creases = renumbered(&next, &step.polygons, &step.creases);
-            self.last = step.polygons;
+            let step = mesh.subdivide(&subdivision, way.method(), &creases, level)?;
+            let next = self.algorithms.build_level(&step.polygons, level + 1)?;
+            creases = next.creases(&subdivision, &step, level + 1)?;
+            self.last = step;
             finest = Some(next);
         }
         Ok(())
     }
 
     fn result(&self) -> (usize, f64) {
-        let points = self.last.positions().iter().copied();
-        (self.last.face_count(), checksum(points))
+        let polygons = &self.last.polygons;
+        (polygons.face_count(), checksum(polygons.positions()))
     }
 }
 
 /// Refines the tables of the structure, with one mesh for each level.
-struct InPlace<M: Refine> {
+struct InPlace {
     job: SubdivisionJob,
-    mesh: M,
-    creases: Creases,
-    levels: Vec<M>,
-    numbers: M::EdgeNumbers,
+    levels: Box<dyn NativeLevels>,
 }
 
-impl<M: Refine + 'static> Refiner for InPlace<M> {
+impl Refiner for InPlace {
     fn run(&mut self) -> Result<(), SubdivisionError> {
-        if self.job.way == Way::NativeFresh {
-            self.levels.clear();
-            self.numbers = M::EdgeNumbers::default();
-        }
-        self.levels.resize_with(self.job.levels as usize, M::empty);
-        let mut creases = self.creases.clone();
-        let mut parent = &self.mesh;
-        for (level, child) in (0..).zip(&mut self.levels) {
-            let subdivision = &self.job.subdivision;
-            creases = subdivision.refine_into(parent, &creases, level, &mut self.numbers, child)?;
-            parent = child;
-        }
-        Ok(())
+        let job = &self.job;
+        let reuse = job.way != Way::NativeFresh;
+        self.levels.run(&job.subdivision, job.levels, reuse)
     }
 
     fn result(&self) -> (usize, f64) {
-        let mesh = self.levels.last().unwrap_or(&self.mesh);
-        (
-            mesh.face_count(),
-            checksum(mesh.position_rows().iter().copied()),
-        )
+        (self.levels.face_count(), checksum(self.levels.positions()))
     }
 }
 
-fn checksum(points: impl Iterator<Item = Point>) -> f64 {
-    let each = points.map(|p| {
+fn checksum(points: &[Point]) -> f64 {
+    let each = points.iter().map(|p| {
         let [x, y, z] = p.to_array().map(|x| f64::from(x).abs());
         x + 2.0 * y + 3.0 * z
     });

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
-use crate::backend::TypeFunctions;
+use crate::backend::Backend;
 use crate::clock::Time;
 use crate::draw::{Draw, Side};
 use crate::edit_pass::{EditPass, PreparedEditor};
@@ -18,8 +18,7 @@ use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
 /// A structure built from `polygons`, with storage for outputs and with handles of the drawn
 /// elements.
 pub(crate) struct TimedStructure<'a, M: Representation> {
-    name: &'static str,
-    functions: TypeFunctions,
+    backend: Backend,
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
     pub(crate) mesh: M,
@@ -30,15 +29,13 @@ pub(crate) struct TimedStructure<'a, M: Representation> {
 
 impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
     pub(crate) fn new(
-        name: &'static str,
-        functions: TypeFunctions,
+        backend: Backend,
         polygons: &'a PolygonMesh,
         draw: Option<&'a Draw>,
         mesh: M,
     ) -> Self {
         Self {
-            name,
-            functions,
+            backend,
             polygons,
             draw,
             outputs: Outputs::for_mesh(&mesh),
@@ -196,11 +193,11 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         series: &Series<'_>,
     ) -> Run {
         let Some(ElementSample { size, .. }) = sample else {
-            return subdivide(&self.functions, subdivision, self.polygons, series);
+            return subdivide(&self.backend, subdivision, self.polygons, series);
         };
         let patch = patch(self.polygons, size);
         let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
-        let run = subdivide(&self.functions, subdivision, &patch, series);
+        let run = subdivide(&self.backend, subdivision, &patch, series);
         Run {
             time: run.time.scaled(scale),
             ..run
@@ -250,7 +247,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
 
 impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     fn name(&self) -> &str {
-        self.name
+        self.backend.name()
     }
 
     fn costs(&self) -> [QueryCost; 9] {
@@ -278,7 +275,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
         };
         let run = match (operation, job.sample, operation.subdivision_job()) {
             (Operation::EditPass(pass), sample, _) => {
-                run_edit_pass(&self.functions, pass, self.polygons, sample, series)
+                run_edit_pass(&self.backend, pass, self.polygons, sample, series)
             }
             (_, sample, Some(subdivision)) => self.subdivide(subdivision, sample, series),
             (Operation::Build, ..) => self.build(series),
@@ -352,7 +349,7 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
 
 /// Runs a pass of edits over the mesh or over a patch.
 fn run_edit_pass(
-    functions: &TypeFunctions,
+    backend: &Backend,
     pass: EditPass,
     polygons: &PolygonMesh,
     sample: Option<ElementSample>,
@@ -360,7 +357,7 @@ fn run_edit_pass(
 ) -> Run {
     let piece = sample.map(|sample| patch(polygons, sample.size));
     let input = piece.as_ref().unwrap_or(polygons);
-    let editor: Option<PreparedEditor> = functions.prepare_pass.map(|new| new(pass, input));
+    let editor: Option<PreparedEditor> = pass.prepare(backend, input);
     let mut editor = match editor.unwrap_or_else(|| Err("it cannot be edited".into())) {
         Ok(editor) => editor,
         Err(refusal) => return Run::refused(refusal, series),

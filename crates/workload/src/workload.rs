@@ -108,7 +108,8 @@ pub enum Action {
     /// Runs a pass over the whole mesh.
     Pass(Operation),
     /// Runs one subdivision step by the fastest method that the structure supports. The scheme is
-    /// Loop for triangle meshes and Catmull–Clark for other meshes.
+    /// Loop for triangle meshes and Catmull–Clark for other meshes. If the mix has edits, the step
+    /// refines the compact form of the structure, because the editable form cannot split its tables.
     Subdivide,
 }
 

@@ -168,13 +168,23 @@ pub fn rows_of_chunk(rows: usize, chunk: usize) -> Range<u32> {
 pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     #[cfg(feature = "rayon")]
     if rows.len() > len && rayon::current_num_threads() > 1 {
-        use rayon::prelude::*;
-        let chunks = rows.par_chunks_mut(len).enumerate();
-        return chunks.for_each(|(number, rows)| work(number * len, rows));
+        let chunks = rows.chunks_mut(len).enumerate();
+        let chunks = chunks.map(|(number, rows)| (number * len, rows)).collect();
+        on_threads(chunks, &|(first, rows)| work(first, rows));
+        return;
     }
     for (number, rows) in rows.chunks_mut(len).enumerate() {
         work(number * len, rows);
     }
+}
+
+/// Calls `work` for every chunk on the threads of the current rayon pool, and returns the results in
+/// order. `work` is called by its address, so that the code of the threads is not compiled again for
+/// every algorithm.
+#[cfg(feature = "rayon")]
+fn on_threads<C: Send, R: Send>(chunks: Vec<C>, work: &(dyn Fn(C) -> R + Sync)) -> Vec<R> {
+    use rayon::prelude::*;
+    chunks.into_par_iter().map(work).collect()
 }
 
 /// Calls `work` for every chunk of `rows`, and returns the results in the order of the chunks.
@@ -205,8 +215,7 @@ pub fn map_chunks<T: Send, R: Send>(
     let work = |(number, range, rows)| work(number, range, rows);
     #[cfg(feature = "rayon")]
     if chunks.len() > 1 && rayon::current_num_threads() > 1 {
-        use rayon::prelude::*;
-        return chunks.into_par_iter().map(work).collect();
+        return on_threads(chunks, &work);
     }
     chunks.into_iter().map(work).collect()
 }
@@ -220,8 +229,8 @@ pub fn all_rows<T: Sync>(rows: &[T], holds: impl Fn(&T) -> bool + Sync) -> bool 
     let all_hold = |rows: &[T]| rows.iter().fold(true, |all, row| all & holds(row));
     #[cfg(feature = "rayon")]
     if rows.len() > CHUNK_ROWS && rayon::current_num_threads() > 1 {
-        use rayon::prelude::*;
-        return rows.par_chunks(CHUNK_ROWS).all(all_hold);
+        let chunks = rows.chunks(CHUNK_ROWS).collect();
+        return !on_threads(chunks, &all_hold).contains(&false);
     }
     rows.chunks(CHUNK_ROWS).all(all_hold)
 }

@@ -4,10 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use sixfold::algorithms::Algorithms;
 use sixfold::glam::DVec3;
 use sixfold::io::WriteOptions;
 use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
-use sixfold::{FaceId, PolygonMesh, Representation, Visitor, visit};
+use sixfold::{FaceId, PolygonMesh};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
@@ -42,16 +43,9 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         })?;
     let output = MeshOutput::open(&arguments.files.output, arguments.files.write, origin)?;
     let spinner = Spinner::start(format!("refining {}", shown(&arguments.files.mesh)));
-    let mut work = LocalRefinement {
-        polygons: &polygons,
-        selection: &selection,
-        levels: arguments.levels,
-        force: arguments.force,
-    };
-    let refined = visit(&arguments.backend, &mut work);
+    let refined = refine(arguments, &polygons, &selection);
     spinner.clear();
-    let refined = refined
-        .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
+    let refined = refined?;
     let mesh = refined.polygons();
     if arguments.levels > 0 && mesh.face_count() == polygons.face_count() {
         print_notice(&format!(
@@ -150,43 +144,35 @@ fn max_bytes(faces: usize, chosen: usize) -> usize {
     new_faces.min(faces.saturating_mul(4)).saturating_mul(BYTES)
 }
 
-/// Local refinement on a structure that is selected at run time.
-struct LocalRefinement<'a> {
-    polygons: &'a PolygonMesh,
-    selection: &'a Selection,
-    levels: u32,
-    force: bool,
-}
-
-impl Visitor for LocalRefinement<'_> {
-    type Output = Result<LocalMesh, Failure>;
-
-    /// Refines as `refine_locally` does, but checks the free memory before each level.
-    fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        let mut local = LocalMesh::new(self.polygons.clone()).map_err(Failure::unsupported)?;
-        for level in 0..self.levels {
-            let mesh = M::from_polygons(local.polygons()).map_err(|refusal| {
-                let structure = M::NAME;
-                let refusal = LocalError::Build {
-                    structure,
-                    level,
-                    refusal,
-                };
-                Failure::cannot_hold(structure, refusal)
-            })?;
-            let chosen = match self.selection {
-                Selection::Faces(_) if level > 0 => local.chosen_parts(),
-                _ => self.selection.faces(&mesh).map_err(Failure::unsupported)?,
+/// Refines as `refine_locally` does, but checks the free memory before each level.
+fn refine(
+    arguments: &Subdivide,
+    polygons: &PolygonMesh,
+    selection: &Selection,
+) -> Result<LocalMesh, Failure> {
+    let algorithms = Algorithms::find(&arguments.backend);
+    let algorithms = algorithms.ok_or_else(|| Failure::no_backend(&arguments.backend))?;
+    let mut local = LocalMesh::new(polygons.clone()).map_err(Failure::unsupported)?;
+    for level in 0..arguments.levels {
+        let mesh = algorithms.build(local.polygons()).map_err(|refusal| {
+            let structure = algorithms.structure();
+            let refusal = LocalError::Build {
+                structure,
+                level,
+                refusal,
             };
-            if chosen.is_empty() {
-                break;
-            }
-            let peak = max_bytes(local.polygons().face_count(), chosen.len());
-            check_memory(&format!("level {}", level + 1), peak, self.force)?;
-            local = local
-                .refined(&mesh, &chosen)
-                .map_err(Failure::unsupported)?;
+            Failure::cannot_hold(structure, refusal)
+        })?;
+        let chosen = match selection {
+            Selection::Faces(_) if level > 0 => local.chosen_parts(),
+            _ => mesh.select(selection).map_err(Failure::unsupported)?,
+        };
+        if chosen.is_empty() {
+            break;
         }
-        Ok(local)
+        let peak = max_bytes(local.polygons().face_count(), chosen.len());
+        check_memory(&format!("level {}", level + 1), peak, arguments.force)?;
+        local = mesh.refine(&local, &chosen).map_err(Failure::unsupported)?;
     }
+    Ok(local)
 }

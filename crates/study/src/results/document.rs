@@ -7,6 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::io;
 
 use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
 
 use crate::labs::study::Report;
 use crate::results::finding::Finding;
@@ -92,16 +93,15 @@ struct ReadDocument {
     failures: Vec<Failed>,
     #[serde(default)]
     notices: Vec<String>,
-    findings: Vec<ReadFinding>,
+    findings: Vec<Box<RawValue>>,
 }
 
 #[derive(Deserialize)]
-struct ReadFinding {
+struct FindingHead {
     run: usize,
     meshes: Vec<usize>,
     start: Start,
-    #[serde(flatten)]
-    finding: Finding,
+    kind: String,
 }
 
 impl<F: Into<Finding>> From<F> for Results {
@@ -260,8 +260,9 @@ impl Results {
         let no_entry = |list: &str, place: usize| ReadError::Malformed {
             cause: format!("a finding names entry {place} of `{list}`, which does not exist"),
         };
-        for read in document.findings {
-            let mut finding = read.finding;
+        for text in document.findings {
+            let read: FindingHead = parse_json(text.get())?;
+            let mut finding = Finding::parse(&read.kind, text.get())?;
             let run = document.runs.get(read.run);
             let run = run.ok_or_else(|| no_entry("runs", read.run))?;
             let mesh = |&place: &usize| {

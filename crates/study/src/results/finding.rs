@@ -1,6 +1,6 @@
 //! The findings of the labs. A lab is one kind of measurement, with its own command.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::labs::growth::GrowthReport;
 use crate::labs::memory::Audit;
@@ -11,7 +11,7 @@ use crate::labs::study::Report;
 use crate::labs::why::Why;
 use crate::results::document::Results;
 use crate::results::figure::Figure;
-use crate::results::read::ReadError;
+use crate::results::read::{ReadError, parse_json};
 use crate::results::rows::{Agreement, MeshReport};
 use crate::results::run::Run;
 
@@ -27,7 +27,7 @@ macro_rules! findings {
     )+) => {
         /// The result of one measuring command. In JSON, the field `kind` has the name of the
         /// command.
-        #[derive(Clone, Debug, Deserialize, Serialize)]
+        #[derive(Clone, Debug, Serialize)]
         #[serde(tag = "kind")]
         #[non_exhaustive]
         pub enum Finding {
@@ -38,6 +38,17 @@ macro_rules! findings {
         pub(crate) const KINDS: [&str; [$($name),+].len()] = [$($name),+];
 
         impl Finding {
+            /// Parses the JSON of a finding. `kind` is the value of its field `kind`, which is read
+            /// first: a derived reader would keep a copy of all fields until it knows the kind.
+            pub(crate) fn parse(kind: &str, text: &str) -> Result<Self, ReadError> {
+                match kind {
+                    $($name => parse_json::<$finding>(text).map(Self::from),)+
+                    other => Err(ReadError::Malformed {
+                        cause: format!("a finding has the unknown kind `{other}`"),
+                    }),
+                }
+            }
+
             fn lab(&self) -> &dyn LabFinding {
                 match self {
                     $(Self::$kind(finding) => &**finding,)+

@@ -8,7 +8,7 @@ use sixfold::{
     BuildError, Edit, FaceId, MeshEdit, Point, PolygonMesh, QueryCost, Relation, Representation,
 };
 
-use crate::backend::{Backend, TypeFunctions};
+use crate::backend::Backend;
 use crate::draw::Draw;
 use crate::edit_place::{EditPlace, apply_edit, prepare_place};
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
@@ -93,17 +93,14 @@ pub fn prepare_mix<'a>(
 pub(crate) fn prepare_query_mix<'a, M: Representation + 'static>(
     input: &MixInput<'a>,
 ) -> PreparedMix<'a> {
-    let functions = input.backend.query_functions();
-    let mix: StructureMix<'a, M, ReadOnly> = StructureMix::new(input, functions)?;
+    let mix: StructureMix<'a, M, ReadOnly> = StructureMix::new(input)?;
     Ok(Box::new(mix))
 }
 
 pub(crate) fn prepare_edit_mix<'a, M: Representation + MeshEdit + 'static>(
     input: &MixInput<'a>,
 ) -> PreparedMix<'a> {
-    let functions = input.backend.edit_functions();
-    let functions = functions.ok_or(MixRefusal::NotEditable)?;
-    let mix: StructureMix<'a, M, ReadWrite> = StructureMix::new(input, functions)?;
+    let mix: StructureMix<'a, M, ReadWrite> = StructureMix::new(input)?;
     Ok(Box::new(mix))
 }
 
@@ -273,7 +270,7 @@ struct StructureMix<'a, M: Representation, W> {
 }
 
 impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> {
-    fn new(input: &MixInput<'a>, functions: TypeFunctions) -> Result<Self, MixRefusal> {
+    fn new(input: &MixInput<'a>) -> Result<Self, MixRefusal> {
         let mesh = M::from_polygons(input.polygons)?;
         let faces = EditPlaces::new(input.schedule, input.polygons)?;
         let work = Work {
@@ -289,9 +286,8 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
             places: Vec::new(),
             write_access: PhantomData,
         };
-        let name = input.backend.name();
         let mut mix = Self {
-            timed: TimedStructure::new(name, functions, input.polygons, Some(input.draw), mesh),
+            timed: TimedStructure::new(input.backend, input.polygons, Some(input.draw), mesh),
             polygons: input.polygons,
             work,
             prepared: None,

@@ -3,10 +3,12 @@
 use crate::engine::statistics::MIN_SAMPLES;
 use crate::engine::warnings::machine_warnings;
 use crate::labs::pick::choice::{Choice, EQUAL_UP_TO};
+use crate::labs::pick::needs::Need;
 use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
 use crate::numbers::{counted, duration, figure, grouped, list, rounded};
 use crate::packages;
 use crate::results::rows::Samples;
+use sixfold_workload::Action;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
@@ -30,6 +32,7 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     sentences.extend(dominant_part(report, best));
     sentences.extend(largest_loss(report, best));
     sentences.extend(tables(report, best));
+    sentences.extend(refined_form(report));
     sentences.extend(one_use_with_building(report, used));
     sentences.push(packages_to_add(used));
     sentences
@@ -37,6 +40,19 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
 
 const NOT_MEASURED: &str = "No backend was measured, because a run would exceed the budget: use a \
                             longer --budget.";
+
+/// Names the form of the structures that `subdivide` refines, if the other operations need the editable
+/// form.
+fn refined_form(report: &PickReport) -> Option<String> {
+    let actions = || report.workload.mix.iter().map(|part| part.action);
+    let edits = report.needs.contains(&Need::Edit) || actions().any(Action::needs_editable_mesh);
+    let subdivides = actions().any(|action| action == Action::Subdivide);
+    (edits && subdivides && report.program.is_none()).then(|| {
+        "`subdivide` refines the compact form of each structure; all other operations run on the \
+         editable form."
+            .into()
+    })
+}
 
 /// Returns warnings about noise, few rounds, a busy machine and wrong results.
 pub(crate) fn warnings(report: &PickReport) -> Vec<String> {

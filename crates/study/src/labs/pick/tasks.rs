@@ -88,7 +88,7 @@ impl<'t> Tasks<'t> {
         match self.schedule.parts[part].action {
             Action::Pass(operation) => Task::Operation(operation),
             Action::Subdivide => {
-                let method = candidate.method(self.scheme, self.schedule.editable);
+                let method = candidate.method(self.scheme);
                 Task::Operation(match self.scheme {
                     Scheme::Loop => Operation::Loop(method),
                     _ => Operation::CatmullClark(method),
@@ -217,14 +217,11 @@ fn sum_by_round(terms: &[(f64, Vec<(u32, Time)>)]) -> Vec<(u32, Time)> {
 }
 
 impl Candidate {
-    /// Returns the method of subdivision that this candidate uses. An editable mesh cannot refine
-    /// its own tables; relation tables do not subdivide.
-    fn method(&self, scheme: Scheme, editable: bool) -> Method {
-        let methods = self.structure.map(|s| s.info.support(scheme).methods);
-        let possible = |method: &&Method| !editable || **method != Method::Native;
-        let methods = methods.unwrap_or_default();
-        let best = methods.iter().rev().find(possible);
-        best.copied().unwrap_or(Method::Scatter)
+    /// Returns the method of subdivision that this candidate uses; relation tables do not subdivide.
+    fn method(&self, scheme: Scheme) -> Method {
+        let support = self.structure.map(|s| s.info.support(scheme));
+        let best = support.and_then(|support| support.default_method());
+        best.unwrap_or(Method::Scatter)
     }
 }
 

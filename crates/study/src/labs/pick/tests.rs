@@ -283,6 +283,21 @@ fn all_backends_are_ranked_by_their_times_on_machines_of_any_speed() {
 }
 
 #[test]
+fn a_mix_that_needs_edits_names_the_form_that_is_subdivided() {
+    let torus = shapes::triangle_torus(12, 12).expect("a torus");
+    for (needs, named) in [(vec![], false), (vec![Need::Edit], true)] {
+        let settings = PickSettings {
+            workload: built_in("subdivision").expect("it is built in"),
+            needs,
+            ..settings(Effort::of_rounds(6))
+        };
+        let report = quick(&settings, std::slice::from_ref(&torus)).expect("all hold it");
+        let names_it = |sentence: &String| sentence.contains("refines the compact form");
+        assert_eq!(report.sentences.iter().any(names_it), named);
+    }
+}
+
+#[test]
 fn the_report_explains_the_ranking() {
     let torus = shapes::triangle_torus(24, 24).expect("a torus");
     let report = quick(&settings(Effort::of_rounds(12)), &[torus]).expect("all hold it");

@@ -301,7 +301,7 @@ fn text_that_is_no_document_is_refused() {
         (&no_mesh, "entry 7 of `meshes`"),
         (&no_run, "entry 3 of `runs`"),
         (&two, "a finding of one mesh has 2 meshes"),
-        (&kind, "unknown variant `guess`"),
+        (&kind, "a finding has the unknown kind `guess`"),
     ] {
         let error = Results::read_json(given).expect_err(expected).to_string();
         assert!(error.contains(expected), "{given:.40}: {error}");
