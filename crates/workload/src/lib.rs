@@ -23,6 +23,7 @@ mod read_probe;
 mod reads;
 mod series;
 mod single_edit;
+pub mod spatial;
 mod subdivide;
 mod subdivision_job;
 mod sweeps;

@@ -5,10 +5,7 @@
 //! which index takes the least time in total, for each number of queries.
 
 mod cheapest;
-mod index;
-mod queries;
 mod sentences;
-mod tasks;
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -17,11 +14,11 @@ use serde::{Deserialize, Serialize};
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
 use sixfold_workload::pages::Policy;
+use sixfold_workload::spatial::{IndexKind, Input, KINDS, LIST};
 use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
 
 pub use cheapest::Cheapest;
-pub use queries::QueryPoints;
-pub use tasks::SpatialTask;
+pub use sixfold_workload::spatial::{QueryPoints, SpatialTask};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::corrected::corrected_entries;
@@ -42,8 +39,6 @@ use crate::results::read::ReadError;
 use crate::results::rows::{Agreement, MeasuredTask, MeshReport, ResultRow, Samples};
 use crate::results::run::{Run, RunSettings};
 use cheapest::{Cost, cheapest};
-use index::{IndexKind, KINDS, LIST};
-use queries::Input;
 
 /// Maximum number of elements that the list visits in one run.
 const LIST_VISITS: usize = 4_000_000;

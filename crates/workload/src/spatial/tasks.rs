@@ -1,10 +1,10 @@
-//! What the lab times: building the indices, and the queries.
+//! What is timed: building the indices, and the queries.
 
 /// The number of vertices that [`SpatialTask::NearestEight`] searches.
-pub(crate) const EIGHT: usize = 8;
+pub const EIGHT: usize = 8;
 
 sixfold_core::named! {
-    /// One task of the lab: building an index, or one kind of query.
+    /// One task: building an index, or one kind of query.
     #[derive(Default)]
     #[non_exhaustive]
     pub enum SpatialTask: "spatial task" {

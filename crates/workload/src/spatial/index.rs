@@ -2,31 +2,33 @@
 
 use std::hint::black_box;
 
+use super::queries::{Input, Triangle, Vertex};
+use super::tasks::{EIGHT, SpatialTask};
+use crate::clock::{Clock, Time};
+use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::series::Series;
 use sixfold::spatial::{
     Bvh, Item, ItemList, KdTree, Neighbour, Octree, PointQueries, SpatialError, SpatialIndex,
     SurfaceQueries, UniformGrid,
 };
 use sixfold::{QueryCost, VertexId};
-use sixfold_workload::{Clock, Job, Outcome, Run, Series, Task, Time, TimedBackend};
-
-use super::queries::{Input, Triangle, Vertex};
-use super::tasks::{EIGHT, SpatialTask};
 
 /// The name of the list, which visits all elements for each query.
-pub(crate) const LIST: &str = "list";
+pub const LIST: &str = "list";
 
 /// Both indices of a kind, as a backend of a trial.
-type Built<'i> = Result<Box<dyn TimedBackend + 'i>, SpatialError>;
+pub type Built<'i> = Result<Box<dyn TimedBackend + 'i>, SpatialError>;
 
 /// A kind of index: how to build it.
 #[derive(Clone, Copy)]
-pub(crate) struct IndexKind {
-    pub(crate) name: &'static str,
+pub struct IndexKind {
+    /// The name of the kind, such as `grid`.
+    pub name: &'static str,
     build: for<'i> fn(&'static str, &'i Input) -> Built<'i>,
 }
 
 /// All kinds of indices, in the order of the tables. The list comes first.
-pub(crate) const KINDS: [IndexKind; 5] = [
+pub const KINDS: [IndexKind; 5] = [
     IndexKind::new::<ItemList<Vertex>, ItemList<Triangle>>(LIST),
     IndexKind::new::<UniformGrid<Vertex>, UniformGrid<Triangle>>("grid"),
     IndexKind::new::<Octree<Vertex>, Octree<Triangle>>("octree"),
@@ -47,7 +49,11 @@ impl IndexKind {
     }
 
     /// Builds both indices of this kind.
-    pub(crate) fn build<'i>(&self, input: &'i Input) -> Built<'i> {
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an index cannot hold the input.
+    pub fn build<'i>(&self, input: &'i Input) -> Built<'i> {
         (self.build)(self.name, input)
     }
 }
@@ -199,6 +205,6 @@ fn time_build<T: SpatialIndex<I>, I: Item>(items: &[I], series: &Series<'_>) -> 
 /// Returns the time of `work` and its result.
 fn timed<R>(clock: &dyn Clock, work: impl FnOnce() -> R) -> (Time, R) {
     let mut result = None;
-    let time = sixfold_workload::timed(clock, || result = Some(work()));
+    let time = crate::clock::timed(clock, || result = Some(work()));
     (time, result.expect("the work was run"))
 }

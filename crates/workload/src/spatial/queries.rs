@@ -1,4 +1,4 @@
-//! The vertices, triangles, query points and rays of the lab.
+//! The vertices, triangles, query points and rays.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -9,7 +9,7 @@ use sixfold::spatial::{
 use sixfold::{FaceId, PolygonMesh, VertexId};
 
 /// Maximum number of query points.
-pub(crate) const MAX_QUERIES: usize = 10_000;
+pub const MAX_QUERIES: usize = 10_000;
 /// How far a query point near the surface may be from a vertex, as a part of the diagonal of the
 /// bounding box.
 const NEAR: f64 = 0.01;
@@ -17,8 +17,10 @@ const NEAR: f64 = 0.01;
 /// its face.
 const RADIUS: f64 = 2.0;
 
-pub(crate) type Vertex = VertexPoint<VertexId>;
-pub(crate) type Triangle = FaceTriangle<FaceId>;
+/// An item of the indices of vertices.
+pub type Vertex = VertexPoint<VertexId>;
+/// An item of the indices of triangles.
+pub type Triangle = FaceTriangle<FaceId>;
 
 sixfold_core::named! {
     /// Where the query points are.
@@ -36,19 +38,26 @@ sixfold_core::named! {
 }
 
 /// The input of all indices: what they store, and what they are asked.
-pub(crate) struct Input {
-    pub(crate) vertices: Vec<Vertex>,
-    pub(crate) triangles: Vec<Triangle>,
-    pub(crate) points: Vec<DVec3>,
+pub struct Input {
+    /// The vertices of the mesh.
+    pub vertices: Vec<Vertex>,
+    /// The triangles of the mesh.
+    pub triangles: Vec<Triangle>,
+    /// The query points.
+    pub points: Vec<DVec3>,
     /// A ray from each query point to another query point.
-    pub(crate) rays: Vec<Ray>,
-    pub(crate) radius: f64,
+    pub rays: Vec<Ray>,
+    /// The radius of [`SpatialTask::VerticesWithin`](super::SpatialTask::VerticesWithin).
+    pub radius: f64,
 }
 
 impl Input {
-    /// Makes up to [`MAX_QUERIES`] query points. Returns an error if a position of the mesh is not
-    /// finite.
-    pub(crate) fn new(
+    /// Makes up to [`MAX_QUERIES`] query points.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a position of the mesh is not finite.
+    pub fn new(
         polygons: &PolygonMesh,
         points: QueryPoints,
         seed: u64,
