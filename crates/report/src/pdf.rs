@@ -341,3 +341,114 @@ fn rgb(colour: &str) -> [f32; 3] {
         (f32::from(part) / 255.0 * 1000.0).round() / 1000.0
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use miniz_oxide::inflate::decompress_to_vec_zlib;
+
+    use super::*;
+    use crate::colours::TEXT_COLOUR;
+
+    fn canvas(text: &str, style: Style) -> Canvas {
+        let mut canvas = Canvas::new(200.0, 100.0);
+        canvas.text([100.0, 50.0], text, style);
+        canvas
+    }
+
+    fn written(canvas: &Canvas) -> Vec<u8> {
+        let panels = [([0.0, 0.0], canvas)];
+        file(canvas.size, &panels, "title χ").expect("a file")
+    }
+
+    /// Returns the streams of a file that are text: the content of the page, and the maps of letters.
+    fn streams(pdf: &[u8]) -> Vec<String> {
+        const BEGIN: &[u8] = b"\nstream\n";
+        let begins = (0..pdf.len()).filter(|&at| pdf[at..].starts_with(BEGIN));
+        let streams = begins.map(|at| {
+            let packed = &pdf[at + BEGIN.len()..];
+            decompress_to_vec_zlib(packed).expect("compressed data")
+        });
+        streams
+            .filter_map(|bytes| String::from_utf8(bytes).ok())
+            .collect()
+    }
+
+    #[test]
+    fn letters_can_be_found_again() {
+        let mut canvas = canvas("≥ Aχ", Style::new(12));
+        canvas.text([0.0, 20.0], "A×", Style::new(12).bold(true));
+        let pdf = written(&canvas);
+        let streams = streams(&pdf);
+        let maps = streams.iter().filter(|text| text.contains("beginbfchar"));
+        let maps: Vec<&str> = maps.map(String::as_str).collect();
+        let [regular, bold] = maps[..] else {
+            panic!("{streams:?}");
+        };
+        // Glyphs are numbered in the order of their first letters.
+        let entries = "<0001> <2265>\n<0002> <0020>\n<0003> <0041>\n<0004> <03C7>\n";
+        assert!(regular.contains(entries), "{regular}");
+        assert!(bold.contains("<0001> <0041>\n<0002> <00D7>\n"), "{bold}");
+        for name in [&b"+DejaVuSans\n"[..], b"+DejaVuSans-Bold\n"] {
+            assert!(pdf.windows(name.len()).any(|part| part == name));
+        }
+        assert_eq!(pdf, written(&canvas));
+    }
+
+    #[test]
+    fn a_font_without_letters_is_left_out() {
+        let pdf = written(&canvas("A", Style::new(12)));
+        let bold = b"DejaVuSans-Bold";
+        assert!(!pdf.windows(bold.len()).any(|part| part == bold));
+    }
+
+    #[test]
+    fn texts_begin_left_of_their_anchors() {
+        // A is 1401 units wide, of 2048.
+        for (style, expected) in [
+            (Style::new(10), "100"),
+            (Style::new(10).middle(), "96.58"),
+            (Style::new(10).end(), "93.16"),
+        ] {
+            let pdf = written(&canvas("A", style));
+            let content = streams(&pdf).concat();
+            let matrix = format!("1 0 0 -1 {expected} 50 Tm");
+            assert!(content.contains(&matrix), "{matrix}: {content}");
+        }
+    }
+
+    #[test]
+    fn shapes_have_their_places_and_colours() {
+        let mut canvas = Canvas::new(40.0, 30.0);
+        canvas.mark("a title".into(), |canvas| {
+            canvas.rect([1.0, 2.0], [3.0, 4.0], "#ff0080");
+            canvas.dashed([5.0, 6.0], [7.0, 8.0], TEXT_COLOUR, 0.5);
+        });
+        canvas.filled(&[[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]], "#000000");
+        let panels = [([10.0, 20.0], &canvas)];
+        let pdf = file([50.0, 60.0], &panels, "").expect("a file");
+        let content = streams(&pdf).concat();
+        for part in [
+            "1 0 0 -1 0 60 cm\n",
+            "q\n1 0 0 1 10 20 cm\n1 2 3 4 re\n1 0 0.502 rg\nf\n",
+            "5 6 m\n7 8 l\n0.09 0.094 0.102 RG\n0.5 w\n[4 3] 0 d\nS\n",
+            "1 1 m\n2 1 l\n2 2 l\n0 0 0 rg\nf\nQ",
+        ] {
+            assert!(content.contains(part), "{part}: {content}");
+        }
+        let size = b"/MediaBox [0 0 50 60]";
+        assert!(pdf.windows(size.len()).any(|part| part == size));
+    }
+
+    #[test]
+    fn missing_letters_are_named_once_and_sorted() {
+        let error = |text| {
+            let canvas = canvas(text, Style::new(12));
+            file(canvas.size, &[([0.0, 0.0], &canvas)], "").expect_err("missing letters")
+        };
+        let letters = vec!['中', '文', '🦀'];
+        assert_eq!(error("文🦀 a 中文"), PdfError::MissingLetters { letters });
+        let message = error("א\t\u{200d}").to_string();
+        let names = "DejaVu Sans, has no U+0009, א (U+05D0), U+200D";
+        assert!(message.ends_with(names), "{message}");
+    }
+}

@@ -187,3 +187,40 @@ impl Display for Style {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_are_written_with_at_most_two_decimals() {
+        let mut canvas = Canvas::new(40.0, 30.5);
+        canvas.mark("<&>".into(), |canvas| {
+            canvas.rect([1.0 / 3.0, -0.001], [3.0, 4.0], "#ff0080");
+            canvas.dashed([5.0, 6.0], [7.0, 8.126], "#000000", 0.5);
+        });
+        canvas.filled(&[[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]], "#000000");
+        canvas.dots([[5.0, 5.0]].into_iter(), 2.4, "#000000");
+        canvas.ring([1.0, 2.0], 3.0, "#000000");
+        let style = Style::new(11).end().bold(true);
+        canvas.text([1.0, 2.0], "a < b", style);
+        canvas.text([1.0, 2.0], "c", Style::new(11).colour("#66686c"));
+        let panels = [([0.0, 0.0], &canvas), ([52.0, 0.0], &canvas)];
+        let svg = element([92.0, 30.5], &panels, "\"label\"", "<style></style>");
+        let shapes = "<g><title>&lt;&amp;&gt;</title>\
+            <rect x=\"0.33\" y=\"0\" width=\"3\" height=\"4\" fill=\"#ff0080\"/>\
+            <path d=\"M5 6L7 8.13\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.5\" stroke-dasharray=\"4 3\"/></g>\
+            <path d=\"M1 1L2 1L2 2Z\" fill=\"#000000\"/>\
+            <path d=\"M3.8 3.8h2.4v2.4h-2.4Z\" fill=\"#000000\"/>\
+            <circle cx=\"1\" cy=\"2\" r=\"3\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.2\"/>\
+            <text x=\"1\" y=\"2\" font-size=\"11\" text-anchor=\"end\" font-weight=\"bold\">a &lt; b</text>\
+            <text x=\"1\" y=\"2\" font-size=\"11\" fill=\"#66686c\">c</text>";
+        let head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"92\" height=\"30.5\" viewBox=\"0 0 92 30.5\" \
+            font-family=\"system-ui, sans-serif\" fill=\"#17181a\" role=\"img\" aria-label=\"&quot;label&quot;\">\
+            <style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
+        let expected = format!("{head}{shapes}<g transform=\"translate(52 0)\">{shapes}</g></svg>");
+        assert_eq!(svg, expected);
+        let hidden = element([1.0, 1.0], &[], "", "");
+        assert!(hidden.contains(" aria-hidden=\"true\">"), "{hidden}");
+    }
+}
