@@ -121,14 +121,13 @@ fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes
     });
     let drawn = axes.draw_curves(&mut canvas, curves.collect());
     let level = last_cache(report).map(|limit| limit.level);
-    for limit in &report.cache_limits {
+    let limits = report.cache_limits.iter();
+    for limit in limits.filter(|limit| Some(limit.level) == level) {
         let fit = fits.iter().find(|fit| fit.backend == limit.backend);
-        let Some(fit) = fit.filter(|_| Some(limit.level) == level) else {
-            continue;
-        };
-        if let Some(point) = between(&points(&report.sizes, fit), limit.faces as f64) {
+        let curve = fit.map(|fit| points(&report.sizes, fit));
+        if let Some(point) = curve.and_then(|curve| between(&curve, limit.faces as f64)) {
             let place = axes.place(point);
-            canvas.circle(place, 6.0, column_colour(&fit.backend));
+            canvas.circle(place, 6.0, column_colour(&limit.backend));
             canvas.circle(place, 4.0, BACKGROUND);
         }
     }
