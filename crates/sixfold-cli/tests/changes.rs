@@ -185,9 +185,8 @@ fn listed(sixfold: &Sixfold, folder: &str) -> Vec<String> {
 #[test]
 fn a_figure_that_cannot_be_pdf_is_named_and_the_others_are_written() {
     let sixfold = Sixfold::new();
-    for name in ["t.obj", "网格.obj"] {
-        sixfold.file(name, TETRAHEDRON);
-    }
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.grid("网格.obj", 3);
     let study = ["study", "t.obj", "网格.obj", "--rounds", "2"];
     let results = ["--operations", "boundary", "--json", "a.json"];
     run_ok(&sixfold, &[&study[..], &results].concat());
