@@ -1,6 +1,8 @@
 //! Makes `reports/editing`: the time of edits on each structure.
 //!
-//! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [ROUNDS]`
+//! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [ROUNDS | --draw]`
+//!
+//! `--draw` only draws the figure again, from the data in the folder.
 //!
 //! Every round runs each edit and each workload once on each structure and mesh. An edit is done at
 //! many places of a fresh copy. The tables show medians of thread-CPU time over the rounds.
@@ -14,6 +16,7 @@ use std::fs;
 use std::path::Path;
 
 use common::median;
+use serde::Deserialize;
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
@@ -21,6 +24,9 @@ use sixfold_study::{Backend, EditPass, Editor, MachineClock, Run, Series, Single
 
 /// Side lengths of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
+
+/// Name of the file with all samples.
+const DATA: &str = "editing.json";
 
 /// Number of places of an edit that does not scan.
 const PLACES: usize = 4096;
@@ -49,8 +55,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
     let folder = words
         .next()
-        .ok_or("usage: editing_report FOLDER [ROUNDS]")?;
-    let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
+        .ok_or("usage: editing_report FOLDER [ROUNDS | --draw]")?;
+    let folder = Path::new(&folder);
+    let rounds = match words.next().as_deref() {
+        Some("--draw") => return figure(folder),
+        Some(rounds) => rounds.parse()?,
+        None => 5,
+    };
     let run = common::start();
     let mut samples = Samples::new();
     for side in SIDES {
@@ -58,20 +69,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         measure(&polygons, rounds, &mut samples)?;
         eprintln!("{} faces measured", polygons.face_count());
     }
-    let folder = Path::new(&folder);
     fs::create_dir_all(folder)?;
     fs::write(folder.join("README.md"), text(&run, rounds, &samples)?)?;
-    figure(&folder.join("growth.svg"), &samples)?;
     let rows = samples.iter().map(|(&((what, backend), faces), ns)| {
         json!({"what": what, "backend": backend, "faces": faces, "cpu_ns": ns})
     });
     let rows: Vec<_> = rows.collect();
     let data = json!({"environment": run.environment, "start": run.start, "rounds": rounds, "results": rows});
-    fs::write(
-        folder.join("editing.json"),
-        serde_json::to_string_pretty(&data)? + "\n",
-    )?;
-    Ok(())
+    let data = serde_json::to_string_pretty(&data)? + "\n";
+    fs::write(folder.join(DATA), data)?;
+    figure(folder)
 }
 
 fn scans(info: &StructureInfo) -> bool {
@@ -246,7 +253,24 @@ fn table<const N: usize>(
     Ok(())
 }
 
-fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
+/// The part of the data that the figure shows.
+#[derive(Deserialize)]
+struct Data {
+    results: Vec<Row>,
+}
+
+/// The times of an edit on a structure and a mesh.
+#[derive(Deserialize)]
+struct Row {
+    what: String,
+    backend: String,
+    faces: usize,
+    cpu_ns: Vec<f64>,
+}
+
+/// Draws the time per edit over the number of faces, from the data in `folder`.
+fn figure(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let data: Data = serde_json::from_slice(&fs::read(folder.join(DATA))?)?;
     let shown = [
         Edit::FlipEdge,
         Edit::CollapseEdge,
@@ -255,19 +279,23 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
         Edit::SetPosition,
         Edit::Compact,
     ];
+    let line = |edit: Edit, backend: &'static str| {
+        let rows = data.results.iter();
+        let rows = rows.filter(|row| (&*row.what, &*row.backend) == (edit.name(), backend));
+        let points = rows.map(|row| (row.faces as f64, median(&row.cpu_ns)));
+        (backend, points.collect())
+    };
     let panel = |edit: Edit| Panel {
         title: edit.name().into(),
         x_label: "faces of the mesh".into(),
         y_label: "ns per edit".into(),
         lines: structure_infos()
             .into_iter()
-            .map(|backend| (backend.name, points(samples, (edit.name(), backend.name))))
+            .map(|backend| line(edit, backend.name))
             .collect(),
     };
-    let panels = panels(
-        "Time per edit over the faces of the mesh",
-        3,
-        &shown.map(panel),
-    );
-    fs::write(path, panels)
+    let title = "Time per edit over the faces of the mesh";
+    let svg = panels(title, 3, &shown.map(panel));
+    fs::write(folder.join("growth.svg"), svg)?;
+    Ok(())
 }

@@ -4,7 +4,8 @@
 //! cargo run --release -p sixfold-report --example subdivision_report -- reports/subdivision
 //! ```
 //!
-//! The optional last argument is the number of rounds.
+//! The optional last argument is the number of rounds (5 without it), or `--draw`: this only draws the figure
+//! again, from the data in the folder.
 //!
 //! Every round runs each scheme, method and structure once at each level, on one thread. The table
 //! and the figure show medians of thread-CPU time over the rounds.
@@ -17,6 +18,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use serde::Deserialize;
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, shapes};
@@ -25,6 +27,9 @@ use sixfold_study::{Backend, Clock, MachineClock, Refiner, Run, SubdivisionJob, 
 
 /// The schemes of the report. Both accept triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
+
+/// Name of the file with all samples.
+const DATA: &str = "subdivision.json";
 
 /// Largest level.
 const LEVELS: u32 = 4;
@@ -51,27 +56,29 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
     let folder = words
         .next()
-        .ok_or("usage: subdivision_report FOLDER [ROUNDS]")?;
-    let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
+        .ok_or("usage: subdivision_report FOLDER [ROUNDS | --draw]")?;
+    let folder = Path::new(&folder);
+    let rounds = match words.next().as_deref() {
+        Some("--draw") => return figure(folder),
+        Some(rounds) => rounds.parse()?,
+        None => 5,
+    };
     let run = common::start();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let polygons = shapes::geodesic(16)?;
     let samples = pool.install(|| measure(&polygons, rounds))?;
-    let folder = Path::new(&folder);
     fs::create_dir_all(folder)?;
     fs::write(folder.join("README.md"), text(&run, rounds, &samples)?)?;
-    figure(&folder.join("growth.svg"), &samples)?;
-    let rows: Vec<_> = samples
-        .iter()
-        .map(|(&((scheme, way, backend), level), sample)| {
-            json!({"scheme": scheme, "way": way, "backend": backend, "level": level,
-                   "faces": sample.faces, "cpu_ns": sample.ns})
-        })
-        .collect();
+    let rows = samples.iter().map(|(&(line, level), sample)| {
+        let (scheme, way, backend) = line;
+        json!({"scheme": scheme, "way": way, "backend": backend, "level": level,
+               "faces": sample.faces, "cpu_ns": sample.ns})
+    });
+    let rows: Vec<_> = rows.collect();
     let data = json!({"environment": run.environment, "start": run.start, "rounds": rounds, "results": rows});
     let data = serde_json::to_string_pretty(&data)? + "\n";
-    fs::write(folder.join("subdivision.json"), data)?;
-    Ok(())
+    fs::write(folder.join(DATA), data)?;
+    figure(folder)
 }
 
 /// The number of faces and the times of the runs, for one line at one level.
@@ -165,15 +172,34 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
     Ok(text)
 }
 
-/// Draws the time per new face over the number of faces, with logarithmic axes.
-fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
+/// The part of the data that the figure shows.
+#[derive(Deserialize)]
+struct Data {
+    results: Vec<Row>,
+}
+
+/// The times of a line at one level.
+#[derive(Deserialize)]
+struct Row {
+    scheme: String,
+    way: String,
+    backend: String,
+    faces: usize,
+    cpu_ns: Vec<f64>,
+}
+
+/// Draws the time per new face over the number of faces, from the data in `folder`.
+fn figure(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let data: Data = serde_json::from_slice(&fs::read(folder.join(DATA))?)?;
     let ways = [Way::Gather, Way::Scatter, Way::Native];
     let line = |scheme: Scheme, way: Way, backend: &'static str| {
-        let levels = (1..=LEVELS).filter_map(|level| {
-            let name = (scheme.name(), way.name(), backend);
-            samples.get(&(name, level))
+        let line = (scheme.name(), way.name(), backend);
+        let rows = data.results.iter();
+        let rows = rows.filter(|row| (&*row.scheme, &*row.way, &*row.backend) == line);
+        let points = rows.map(|row| {
+            let faces = row.faces as f64;
+            (faces, common::median(&row.cpu_ns) / faces)
         });
-        let points = levels.map(|sample| (sample.faces as f64, sample.ns_per_face()));
         (backend, points.collect())
     };
     let panel = |(scheme, way): (Scheme, Way)| Panel {
@@ -187,6 +213,7 @@ fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     };
     let all = SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w)));
     let all: Vec<Panel> = all.map(panel).collect();
-    let panels = panels("Nanoseconds per new face, by size", ways.len(), &all);
-    fs::write(path, panels)
+    let svg = panels("Nanoseconds per new face, by size", ways.len(), &all);
+    fs::write(folder.join("growth.svg"), svg)?;
+    Ok(())
 }

@@ -2,7 +2,6 @@
 
 pub(crate) mod rows;
 
-use chrono::DateTime;
 use serde::Serialize;
 use sixfold_study::{Figure as TimeRow, write_csv_rows};
 
@@ -36,12 +35,21 @@ pub(crate) fn dates(first: u64, last: u64) -> String {
 
 /// Formats a time in seconds since 1970 as a date of the Gregorian calendar: `2026-11-27`.
 pub(crate) fn date(unix_time: u64) -> String {
-    let seconds = i64::try_from(unix_time).unwrap_or(i64::MAX);
-    let time = DateTime::from_timestamp(seconds, 0);
-    time.map_or_else(
-        || format!("{unix_time} s after 1970"),
-        |time| time.format("%Y-%m-%d").to_string(),
-    )
+    // The calendar repeats itself every 400 years. A year begins in March here, so the leap day is its last
+    // day, and the months have the lengths 31 30 31 30 31, 31 30 31 30 31, 31 ….
+    const DAYS: u64 = 400 * 365 + 97;
+    let days = unix_time / 86_400 + 719_468; // since 1 March of the year 0
+    let (cycle, day) = (days / DAYS, days % DAYS);
+    let year = (day - day / 1460 + day / 36_524 - day / (DAYS - 1)) / 365;
+    let day_of_year = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day_of_year + 2) / 153;
+    let day_of_month = day_of_year - (153 * month + 2) / 5 + 1;
+    let (month, next_year) = match month {
+        0..10 => (month + 3, 0),
+        _ => (month - 9, 1),
+    };
+    let year = 400 * cycle + year + next_year;
+    format!("{year:04}-{month:02}-{day_of_month:02}")
 }
 
 #[cfg(test)]
@@ -60,7 +68,8 @@ mod tests {
         ] {
             assert_eq!(date(unix_time), expected, "{unix_time}");
         }
-        assert_eq!(date(u64::MAX), "18446744073709551615 s after 1970");
+        // The largest number is no time of a measurement, but a document may have it.
+        assert_eq!(date(u64::MAX), "584554051223-11-09");
         assert_eq!(dates(0, 86_399), "1970-01-01 (UTC)");
         assert_eq!(dates(0, 86_400), "1970-01-01 to 1970-01-02 (UTC)");
     }

@@ -14,6 +14,7 @@
 //!
 //! [`ReportPage::from_changes`] draws what changed between two results.
 
+mod axes;
 mod canvas;
 mod changes;
 mod colours;
@@ -25,9 +26,11 @@ mod markdown;
 mod matrix;
 mod panels;
 mod papers;
+mod pdf;
 mod picture;
 mod source;
 mod summary;
+mod svg;
 
 use matrix::Matrix;
 use sixfold_study::Results;
@@ -36,8 +39,9 @@ pub use changes::Compared;
 pub use colours::structure_colours;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
-pub use papers::PaperFile;
-pub use picture::{PdfError, Picture};
+pub use papers::{NoPdf, PaperFile, PaperFiles};
+pub use pdf::PdfError;
+pub use picture::Picture;
 pub use summary::{Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};
 
 /// A report on studies and additional measurements.

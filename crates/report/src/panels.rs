@@ -1,16 +1,15 @@
 //! Several small line charts in one SVG figure.
 
-use kuva::Theme;
-use kuva::plot::{LinePlot, ScatterPlot};
-use kuva::render::figure::Figure as Grid;
-use kuva::render::layout::Layout;
-use kuva::render::plots::Plot;
-
 use crate::Picture;
-use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR, column_colour};
+use crate::axes::{Axes, Curve, LogScale};
+use crate::canvas::{Canvas, Style};
+use crate::colours::column_colour;
+use crate::figure::count_tick;
 
-/// Width and height of one panel.
-const SIZE: [f64; 2] = [400.0, 320.0];
+/// Size of a panel, and the places of its axes.
+const SIZE: [f64; 2] = [440.0, 320.0];
+const ACROSS: [f64; 2] = [58.0, 310.0];
+const UPWARDS: [f64; 2] = [270.0, 50.0];
 
 /// One small line chart with logarithmic axes.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,70 +24,57 @@ pub struct Panel {
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
 }
 
-/// Draws `panels` as one SVG with a common legend. The SVG has `columns` panels side by side in
-/// each row.
+/// Draws `panels` as one SVG. The SVG has `columns` panels side by side in each row. All panels have the same
+/// axes, which contain all points with positive coordinates.
 pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
-    let rows = panels.len().div_ceil(columns);
-    let (mut plots, mut layouts) = (Vec::new(), Vec::new());
-    for panel in panels {
-        let lines = panel.lines.iter().filter(|(_, points)| !points.is_empty());
-        let drawn: Vec<Plot> = lines
-            .flat_map(|(name, points)| line(name, points))
-            .collect();
-        let layout = base_layout(&drawn, SIZE[0], SIZE[1])
-            .with_title(panel.title.clone())
-            .with_title_size(14)
-            .with_x_label(panel.x_label.clone())
-            .with_y_label(panel.y_label.clone())
-            .with_log_scale();
-        plots.push(drawn);
-        layouts.push(layout);
-    }
-    let grid = Grid::new(rows, columns)
-        .with_plots(plots)
-        .with_layouts(layouts)
-        .with_cell_size(SIZE[0], SIZE[1])
-        .with_shared_legend_bottom();
-    Picture::single(title, grid.render()).svg()
+    let [x, y] = [0, 1].map(|axis| {
+        let points = panels.iter().flat_map(|panel| &panel.lines);
+        let points = points.flat_map(|(_, points)| points);
+        let values = points.map(|&(x, y)| [x, y][axis]);
+        let [least, most] = { values.filter(|&value| value > 0.0) }
+            .fold([f64::INFINITY, 0.0], |[least, most], value| {
+                [value.min(least), value.max(most)]
+            });
+        // A scale needs some length.
+        match least < most {
+            true => [least, most],
+            false => [1.0, 10.0],
+        }
+    });
+    let drawn = panels.iter().map(|panel| draw(panel, x, y)).collect();
+    Picture::grid(title, columns, drawn).svg()
 }
 
-fn line(name: &str, points: &[(f64, f64)]) -> [Plot; 2] {
-    let colour = column_colour(name);
-    let line = LinePlot::new()
-        .with_data(points.to_vec())
-        .with_color(colour)
-        .with_stroke_width(2.0)
-        .with_legend(name);
-    let titles = points
-        .iter()
-        .map(|(x, y)| format!("{name}: {x:.0}, {y:.3}"));
-    let dots = ScatterPlot::new()
-        .with_data(points.to_vec())
-        .with_color(colour)
-        .with_size(3.0)
-        .with_tooltip_labels(titles);
-    [Plot::Line(line), Plot::Scatter(dots)]
-}
-
-/// Returns a layout of the given size with the colours and fonts of the report.
-fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
-    let theme = Theme {
-        background: BACKGROUND.into(),
-        axis_color: TEXT_COLOUR.into(),
-        grid_color: GRID_COLOUR.into(),
-        tick_color: TEXT_COLOUR.into(),
-        text_color: TEXT_COLOUR.into(),
-        legend_bg: BACKGROUND.into(),
-        legend_border: GRID_COLOUR.into(),
-        colorbar_border: TEXT_COLOUR.into(),
-        font_family: Some("system-ui, sans-serif".into()),
-        ..Theme::light()
+/// Draws a panel. `x` and `y` have the least and the largest value of an axis.
+fn draw(panel: &Panel, x: [f64; 2], y: [f64; 2]) -> Canvas {
+    let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
+    canvas.text([0.0, 14.0], &panel.title, Style::new(14).bold(true));
+    let axes = Axes {
+        x: LogScale {
+            values: x,
+            pixels: ACROSS,
+        },
+        y: LogScale {
+            values: y,
+            pixels: UPWARDS,
+        },
+        x_label: &panel.x_label,
+        y_label: &panel.y_label,
+        x_format: &count_tick,
+        y_format: &|value| match value {
+            value if value < 1.0 => format!("{value}"),
+            value => count_tick(value),
+        },
     };
-    Layout::auto_from_plots(plots)
-        .with_theme(theme)
-        .with_width(width)
-        .with_height(height)
-        .with_label_size(13)
-        .with_tick_size(12)
-        .with_body_size(12)
+    axes.draw(&mut canvas);
+    let curves = panel.lines.iter().map(|(name, points)| {
+        let title = |&(x, y): &(f64, f64)| ([x, y], format!("{name}: {x:.0}, {y:.3}"));
+        Curve {
+            name: (*name).into(),
+            colour: column_colour(name),
+            points: points.iter().map(title).collect(),
+        }
+    });
+    axes.draw_curves(&mut canvas, curves.collect());
+    canvas
 }

@@ -8,6 +8,7 @@ mod tex;
 use std::fmt::Write as _;
 
 use sixfold_study::Results;
+use thiserror::Error;
 
 use crate::{Figure, PdfError, ReportPage};
 
@@ -30,46 +31,66 @@ impl PaperFile {
     }
 }
 
+/// The files for a paper, and the figures without a PDF file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PaperFiles {
+    /// The files.
+    pub files: Vec<PaperFile>,
+    /// The PDF files that are missing.
+    pub missing: Vec<NoPdf>,
+}
+
+/// A figure has no PDF file. Its other files are complete.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{id}.pdf is not written: {cause}; {id}.svg has the figure")]
+#[non_exhaustive]
+pub struct NoPdf {
+    /// The id of the figure.
+    pub id: String,
+    /// Why the picture cannot be written as PDF.
+    #[source]
+    pub cause: PdfError,
+}
+
 impl ReportPage {
     /// Returns the files for a paper. `results` are the results that the page shows.
     ///
     /// Each figure has four files (see [`Self::figure_files`]): `ID.svg`, `ID.pdf`, `ID.csv` (the data, see
     /// [`Figure::csv`]) and `ID.txt` (the caption), where ID is the `id` of the
-    /// figure. Without the feature `pdf`, the PDF files are left out. `results.tex` and `results.md`
-    /// have the same tables, and `methods.md` describes how the results were measured.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if a figure cannot be drawn as PDF.
-    pub fn paper(&self, results: &Results) -> Result<Vec<PaperFile>, PdfError> {
-        let mut files = self.figure_files()?;
+    /// figure. `results.tex` and `results.md` have the same tables, and `methods.md` describes how the results
+    /// were measured.
+    pub fn paper(&self, results: &Results) -> PaperFiles {
+        let mut paper = self.figure_files();
         let tables = tables::tables(results);
-        files.push(PaperFile::new("results.tex", tex::document(&tables)));
-        files.push(PaperFile::new("results.md", tables::markdown(&tables)));
-        files.push(PaperFile::new("methods.md", methods::methods(results)));
-        Ok(files)
+        paper.files.extend([
+            PaperFile::new("results.tex", tex::document(&tables)),
+            PaperFile::new("results.md", tables::markdown(&tables)),
+            PaperFile::new("methods.md", methods::methods(results)),
+        ]);
+        paper
     }
 
-    /// Returns the files of each figure for a paper: `ID.svg`, `ID.pdf`, `ID.csv` and `ID.txt`.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if a figure cannot be drawn as PDF.
-    pub fn figure_files(&self) -> Result<Vec<PaperFile>, PdfError> {
-        let mut files = Vec::new();
+    /// Returns the files of each figure for a paper: `ID.svg`, `ID.pdf`, `ID.csv` and `ID.txt`. The PDF file is
+    /// left out if the font of PDF files does not have all letters of the picture.
+    pub fn figure_files(&self) -> PaperFiles {
+        let mut paper = PaperFiles::default();
         for figure in self.all_figures() {
             let id = &figure.id;
+            let files = &mut paper.files;
             files.push(PaperFile::new(format!("{id}.svg"), figure.picture.svg()));
-            #[cfg(feature = "pdf")]
-            files.push(PaperFile::new(format!("{id}.pdf"), figure.picture.pdf()?));
+            match figure.picture.pdf() {
+                Ok(pdf) => files.push(PaperFile::new(format!("{id}.pdf"), pdf)),
+                Err(cause) => paper.missing.push(NoPdf {
+                    id: id.clone(),
+                    cause,
+                }),
+            }
             files.push(PaperFile::new(format!("{id}.csv"), &*figure.csv));
             files.push(PaperFile::new(format!("{id}.txt"), caption(figure)));
         }
-        Ok(files)
+        paper
     }
-}
 
-impl ReportPage {
     /// Returns the files of the page: `report.html`, `report.md` and `figures/ID.svg`.
     pub fn files(&self) -> Vec<PaperFile> {
         let pages = [

@@ -137,10 +137,10 @@ fn axis(figure: &Figure) -> impl Fn(f64) -> f64 {
 
 /// Returns the ends of the line of a mark.
 fn interval(shapes: &str) -> Option<[f64; 2]> {
-    let (_, path) = shapes.split_once("<path d=\"M ")?;
-    let numbers = path.split('"').next()?.split_whitespace();
-    let numbers: Vec<f64> = numbers.filter_map(|word| word.parse().ok()).collect();
-    Some([numbers[0], numbers[2]])
+    let (_, path) = shapes.split_once("<path d=\"M")?;
+    let (from, to) = path.split('"').next()?.split_once('L')?;
+    let x = |point: &str| point.split(' ').next()?.parse().ok();
+    Some([x(from)?, x(to)?])
 }
 
 #[test]
@@ -535,6 +535,36 @@ fn incomplete_results_are_labelled() {
         );
         assert!(place("rustc 1.94") < place("in b.json divided by the time in a.json"));
     }
+}
+
+/// The other files of this figure and the other figures are complete.
+#[test]
+fn a_figure_with_letters_that_its_font_lacks_has_no_pdf() {
+    let mut row = change("build", "half-edge", 2.0);
+    row.measurement.mesh = "文🦀中χ文.obj".into();
+    let page = page(&changes(vec![row, change("build", "half-edge", 3.0)]));
+    let paper = page.figure_files();
+    let [missing] = &paper.missing[..] else {
+        panic!("{:?}", paper.missing);
+    };
+    assert_eq!(
+        missing.to_string(),
+        "changes.pdf is not written: the font of PDF files, DejaVu Sans, has no 中 (U+4E2D), 文 (U+6587), 🦀 (U+1F980); \
+         changes.svg has the figure"
+    );
+    let names: Vec<&str> = paper.files.iter().map(|file| &*file.name).collect();
+    assert_eq!(
+        names,
+        [
+            "changes.svg",
+            "changes.csv",
+            "changes.txt",
+            "ratios.svg",
+            "ratios.pdf",
+            "ratios.csv",
+            "ratios.txt"
+        ]
+    );
 }
 
 #[test]

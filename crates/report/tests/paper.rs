@@ -36,7 +36,9 @@ fn results(meshes: &[&str]) -> Results {
 
 fn paper(results: &Results) -> Vec<PaperFile> {
     let page = ReportPage::new(results, "sixfold study");
-    page.paper(results).expect("figures")
+    let paper = page.paper(results);
+    assert_eq!(paper.missing, []);
+    paper.files
 }
 
 fn bytes<'p>(files: &'p [PaperFile], name: &str) -> &'p [u8] {

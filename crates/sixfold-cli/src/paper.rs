@@ -1,14 +1,14 @@
 //! The folder of `--figures`, with the files for a paper.
 //!
 //! ```text
-//! DIR/ID.svg, ID.pdf             each figure
+//! DIR/ID.svg, ID.pdf             each figure; no PDF if its font lacks a letter
 //! DIR/ID.csv, ID.txt             the data and the caption of the figure
 //! DIR/results.tex, results.md    tables
 //! DIR/methods.md                 how the results were measured
 //! DIR/sixfold-files.txt          the names of these files
 //! ```
 
-use sixfold_report::{PaperFile, PdfError, ReportPage};
+use sixfold_report::{PaperFiles, ReportPage};
 use sixfold_study::Results;
 
 use crate::failure::Failure;
@@ -28,14 +28,11 @@ pub(crate) fn write_if(
     write(folder, ReportPage::new(results, command).paper(results))
 }
 
-/// Writes drawn figures, and says if this program cannot write PDF files.
-pub(crate) fn write(
-    folder: &ListedFolder,
-    files: Result<Vec<PaperFile>, PdfError>,
-) -> Result<(), Failure> {
-    folder.write(files.map_err(Failure::usage)?)?;
-    if cfg!(not(feature = "pdf")) {
-        print_notice("note: no PDF files: this program was built without the feature `pdf`");
+/// Writes drawn figures, and prints a notice for each figure without a PDF file.
+pub(crate) fn write(folder: &ListedFolder, paper: PaperFiles) -> Result<(), Failure> {
+    folder.write(paper.files)?;
+    for missing in paper.missing {
+        print_notice(&format!("note: {missing}"));
     }
     Ok(())
 }

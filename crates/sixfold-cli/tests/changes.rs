@@ -183,6 +183,41 @@ fn listed(sixfold: &Sixfold, folder: &str) -> Vec<String> {
 }
 
 #[test]
+fn a_figure_that_cannot_be_pdf_is_named_and_the_others_are_written() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    sixfold.grid("网格.obj", 3);
+    let study = ["study", "t.obj", "网格.obj", "--rounds", "2"];
+    let results = ["--operations", "boundary", "--json", "a.json"];
+    run_ok(&sixfold, &[&study[..], &results].concat());
+    let mut study: Value = serde_json::from_str(&text(&sixfold, "a.json")).expect("JSON");
+    for (name, ns) in [("a.json", 1000.0), ("b.json", 2000.0)] {
+        for finding in study["findings"].as_array_mut().expect("studies") {
+            set_times(finding, |backend| match backend {
+                "half-edge" => ns,
+                _ => 1000.0,
+            });
+        }
+        sixfold.file(name, &study.to_string());
+    }
+    let figures = ["compare", "a.json", "b.json", "--figures", "paper"];
+    let run = run_ok(&sixfold, &figures);
+    let notice = "note: changes.pdf is not written: the font of PDF files, DejaVu Sans, has no 格 (U+683C), 网 (U+7F51); \
+                  changes.svg has the figure\n";
+    assert_eq!(run.stderr, notice);
+    let exists = |name: &str| sixfold.folder().join("paper").join(name).exists();
+    for (name, expected) in [
+        ("changes.svg", true),
+        ("changes.pdf", false),
+        ("changes.csv", true),
+        ("ratios.svg", true),
+        ("ratios.pdf", true),
+    ] {
+        assert_eq!(exists(name), expected, "{name}");
+    }
+}
+
+#[test]
 fn a_report_shows_the_changes_and_keeps_the_exit_code() {
     let sixfold = two_studies();
     let plain = run_ok(&sixfold, &["compare", "a.json", "b.json"]).stdout;

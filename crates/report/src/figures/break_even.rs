@@ -6,7 +6,8 @@ use sixfold_study::{Operation, PickReport, Report, ResultRow};
 
 use super::INPUT_BACKEND;
 use crate::Picture;
-use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
+use crate::axes::{Axes, LogScale, spread};
+use crate::canvas::{Canvas, Style};
 use crate::colours::column_colour;
 use crate::data::own_columns;
 use crate::data::rows::BreakEvenRow;
@@ -342,7 +343,7 @@ impl Curves<'_> {
         Some(Figure {
             caption: self.caption(lines),
             id: self.id,
-            picture: Picture::single(&self.title, canvas.finish()),
+            picture: Picture::single(&self.title, canvas),
             title: self.title,
             table,
             csv,

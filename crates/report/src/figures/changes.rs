@@ -1,12 +1,12 @@
 //! The figure of the changes beyond the noise: a row for each time, the largest change first.
 
-use kuva::render::render::Scene;
 use sixfold_study::Change;
 use sixfold_study::numbers::{counted, grouped, times};
 
 use super::ratio_axis::{self, FARTHEST};
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style, text_width};
+use crate::axes::LogScale;
+use crate::canvas::{Canvas, Style, text_width};
 use crate::changes::{Compared, Ranked, TABLE_ROWS, both_times};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
 use crate::data::rows;
@@ -144,7 +144,7 @@ pub(super) fn widest<'t>(texts: impl Iterator<Item = &'t str>) -> f64 {
     texts.map(|text| text_width(text, 11)).fold(0.0, f64::max)
 }
 
-fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Scene {
+fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Canvas {
     let names = widest(rows.iter().map(|row| &*row.operation));
     let backends = widest(rows.iter().map(|row| &*row.backend));
     let left = names + GAP + backends + GAP;
@@ -182,7 +182,7 @@ fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Scene {
         };
         canvas.text([text_from, y + 4.0], &row.text, style);
     }
-    canvas.finish()
+    canvas
 }
 
 /// Draws the dot of a row with its interval.

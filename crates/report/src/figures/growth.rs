@@ -1,13 +1,13 @@
 //! Figures of the growth of times with the size of the mesh. On logarithmic axes, the slope of a
 //! line is the exponent of growth.
 
-use kuva::render::render::Scene;
 use sixfold_study::numbers::{bytes, duration, grouped};
 use sixfold_study::{CacheLimit, Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};
 use crate::Picture;
-use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
+use crate::axes::{Axes, Curve, LogScale};
+use crate::canvas::{Canvas, Style};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
@@ -99,61 +99,46 @@ fn last_cache(report: &GrowthReport) -> Option<&CacheLimit> {
     report.cache_limits.iter().max_by_key(|limit| limit.level)
 }
 
-fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes<'_>) -> Scene {
+fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes<'_>) -> Canvas {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
     canvas.text([0.0, 14.0], operation.name(), Style::new(14).bold(true));
     axes.draw(&mut canvas);
-    let level = last_cache(report).map(|limit| limit.level);
-    let mut names = Vec::new();
-    for fit in fits {
-        let points = points(&report.sizes, fit);
-        let Some(&last) = points.last() else {
-            continue;
-        };
-        let colour = column_colour(&fit.backend);
-        let places: Vec<[f64; 2]> = points.iter().map(|&point| axes.place(point)).collect();
-        canvas.polyline(&places, colour, 1.5);
-        for ([faces, ns], place) in points.iter().zip(&places) {
-            let faces = grouped(*faces as usize);
-            let title = format!("{}, {faces} faces: {}", fit.backend, duration(*ns));
-            canvas.mark(title, |canvas| canvas.circle(*place, 2.5, colour));
+    let curves = fits.iter().map(|fit| {
+        let points = points(&report.sizes, fit).into_iter().map(|point| {
+            let [faces, ns] = point;
+            let faces = grouped(faces as usize);
+            let title = format!("{}, {faces} faces: {}", fit.backend, duration(ns));
+            (point, title)
+        });
+        Curve {
+            name: match fit.all {
+                Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
+                None => fit.backend.clone(),
+            },
+            colour: column_colour(&fit.backend),
+            points: points.collect(),
         }
-        let mut limits = report.cache_limits.iter();
-        let limit = limits.find(|l| Some(l.level) == level && l.backend == fit.backend);
-        if let Some(place) = limit.and_then(|limit| between(&points, limit.faces as f64)) {
-            let place = axes.place(place);
-            canvas.circle(place, 6.0, colour);
+    });
+    let drawn = axes.draw_curves(&mut canvas, curves.collect());
+    let level = last_cache(report).map(|limit| limit.level);
+    let limits = report.cache_limits.iter();
+    for limit in limits.filter(|limit| Some(limit.level) == level) {
+        let fit = fits.iter().find(|fit| fit.backend == limit.backend);
+        let curve = fit.map(|fit| points(&report.sizes, fit));
+        if let Some(point) = curve.and_then(|curve| between(&curve, limit.faces as f64)) {
+            let place = axes.place(point);
+            canvas.circle(place, 6.0, column_colour(&limit.backend));
             canvas.circle(place, 4.0, BACKGROUND);
         }
-        names.push((fit, axes.place(last), colour));
     }
-    let heights: Vec<f64> = names.iter().map(|(_, [_, y], _)| *y).collect();
-    let labels = spread(&heights, 14.0, [UPWARDS[1], UPWARDS[0]]);
-    for ((fit, [x, y], colour), label) in names.into_iter().zip(labels) {
-        let (from, to) = ([x + 3.0, y], [ACROSS[1] + 12.0, label]);
-        // Dashed, because a line across the chart is no curve.
-        match ACROSS[1] - x > 12.0 {
-            true => canvas.dashed(from, to, colour, 0.7),
-            false => canvas.line(from, to, colour, 0.7),
-        }
-        let text = match fit.all {
-            Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
-            None => fit.backend.clone(),
-        };
-        canvas.text([ACROSS[1] + 15.0, label + 4.0], &text, Style::new(12));
-    }
-    if names_nothing(fits, &report.sizes) {
+    if drawn == 0 {
         canvas.text(
             [ACROSS[0] + 10.0, 80.0],
             "no measured times",
             Style::new(11).colour(FAINT_COLOUR),
         );
     }
-    canvas.finish()
-}
-
-fn names_nothing(fits: &[&Fit], sizes: &[SizeReport]) -> bool {
-    fits.iter().all(|fit| points(sizes, fit).is_empty())
+    canvas
 }
 
 /// Returns the point of a curve at `x`, between its measured points; `None` beyond its ends.

@@ -1,6 +1,5 @@
 //! The heat map: all structures and operations in one figure, with their ratios.
 
-use kuva::plot::ColorMap;
 use sixfold_study::numbers::times;
 
 use crate::Picture;
@@ -19,6 +18,15 @@ const ROW: f64 = 21.0;
 /// The text on dark cells and on light cells, in both modes of the page.
 const ON_DARK: &str = "#ffffff";
 const ON_LIGHT: &str = "#000000";
+
+/// The colours of the ratios from 1 to [`MAX_RATIO`], ten for each factor of 10: the colour map viridis of van der
+/// Walt and Smith (2015).
+const VIRIDIS: [&str; 31] = [
+    "#440154", "#470d60", "#481a6c", "#482576", "#472f7d", "#443983", "#414487", "#3d4e8a",
+    "#39568c", "#355f8d", "#31688e", "#2d718e", "#2a788e", "#27808e", "#23888e", "#21918c",
+    "#1f988b", "#1fa088", "#22a884", "#2ab07f", "#35b779", "#42be71", "#54c568", "#67cc5c",
+    "#7ad151", "#8ed645", "#a5db36", "#bddf26", "#d2e21b", "#e7e419", "#fde725",
+];
 
 /// Draws `matrix`. The figure has no picture without operations.
 pub(super) fn figure(
@@ -46,7 +54,7 @@ pub(super) fn figure(
     }
     Some(Figure {
         id: format!("{id_prefix}heat-map"),
-        picture: Picture::single(&title, canvas.finish()),
+        picture: Picture::single(&title, canvas),
         title,
         caption: caption(matrix),
         table: matrix.ratios(),
@@ -114,7 +122,8 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str
                 Some(ratio) => {
                     // The colour of a lower bound would rank it.
                     let share = ratio.clamp(1.0, MAX_RATIO).log10() / MAX_RATIO.log10();
-                    canvas.rect(corner, size, &ColorMap::Viridis.map(share));
+                    let place = (share * (VIRIDIS.len() - 1) as f64).round() as usize;
+                    canvas.rect(corner, size, VIRIDIS[place]);
                     let ink = if share < 0.55 { ON_DARK } else { ON_LIGHT };
                     canvas.text(centre, &text, label.colour(ink));
                 }

@@ -65,7 +65,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     let title = format!("Bytes per vertex: {}", super::file_name(&study.mesh.name));
     Some(Figure {
         id: format!("{id_prefix}memory"),
-        picture: Picture::single(&title, canvas.finish()),
+        picture: Picture::single(&title, canvas),
         title,
         caption: format!(
             "Bytes held, including spare capacity; the number at the end of a bar is for each of the {} \

@@ -1,13 +1,13 @@
 //! A figure of the effect that the order of the elements in memory has on the times of each
 //! structure.
 
-use kuva::render::render::Scene;
 use sixfold_study::numbers::{duration, figure as shown, shown_ratio, times};
 use sixfold_study::{Comparison, FEWEST_OF_A_WINNER, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style};
+use crate::axes::LogScale;
+use crate::canvas::{Canvas, Style};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, table_colour};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table};
@@ -147,7 +147,7 @@ fn panel(
     names: &[&str],
     scale: LogScale,
     rows: usize,
-) -> Scene {
+) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64);
     canvas.text(
         [0.0, 14.0],
@@ -206,5 +206,5 @@ fn panel(
         };
         canvas.text([POINTS[1] + 14.0, y + 4.0], &text, Style::new(12));
     }
-    canvas.finish()
+    canvas
 }

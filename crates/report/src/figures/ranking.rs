@@ -1,13 +1,13 @@
 //! Rankings: a panel for each operation, with the time of each structure or external program relative
 //! to the fastest. All panels have one scale.
 
-use kuva::render::render::Scene;
 use sixfold_study::numbers::{duration, grouped, shown_ratio, times};
 use sixfold_study::{NeighboursReport, PickReport, SpatialTask, Standing};
 
 use super::per_unit;
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style, scatter, text_width};
+use crate::axes::{LogScale, scatter};
+use crate::canvas::{Canvas, Style, text_width};
 use crate::colours::{
     BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, TEXT_COLOUR, column_colour,
 };
@@ -263,7 +263,7 @@ fn row(panel: &Panel<'_>, cell: &Cell) -> Vec<String> {
 }
 
 /// Draws the bars of one operation. All panels of a figure are as tall as if they had `rows` bars.
-fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Scene {
+fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64 + FOOT);
     canvas.text([0.0, 14.0], panel.title, Style::new(14).bold(true));
     let best = cells.first().filter(|cell| cell.ratio.is_some());
@@ -288,7 +288,7 @@ fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Sc
             panel.unit,
         );
     }
-    canvas.finish()
+    canvas
 }
 
 /// Draws a bar with its name and its ratio. `y` is the upper end of the bar.

@@ -1,6 +1,7 @@
 //! The axis of ratios of two times: logarithmic, with 1 in the middle, faster on the left.
 
-use crate::canvas::{Canvas, LogScale, Style, text_width};
+use crate::axes::LogScale;
+use crate::canvas::{Canvas, Style, text_width};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR};
 
 /// Ratios beyond this one are drawn at the end of the axis.

@@ -1,13 +1,13 @@
 //! The figure of all ratios of a comparison: a line for each backend.
 
-use kuva::render::render::Scene;
 use sixfold_study::Change;
 use sixfold_study::numbers::{counted, figure as shown, grouped, times};
 
 use super::changes::{cut, widest};
 use super::ratio_axis;
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style};
+use crate::axes::LogScale;
+use crate::canvas::{Canvas, Style};
 use crate::changes::{Compared, Ranked};
 use crate::colours::{GRID_COLOUR, INTERVAL_COLOUR, column_colour};
 use crate::data::rows;
@@ -124,7 +124,7 @@ fn lines<'c>(ranked: &Ranked<'c>) -> Vec<Line<'c>> {
     lines
 }
 
-fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>], has_dots: bool) -> Scene {
+fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>], has_dots: bool) -> Canvas {
     let backends: Vec<String> = lines
         .iter()
         .map(|line| cut(line.backend, LETTERS))
@@ -163,7 +163,7 @@ fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>], has_dots: bool) -> Scene {
             false => draw_quartiles(&mut canvas, line, scale, y),
         }
     }
-    canvas.finish()
+    canvas
 }
 
 /// Draws a dot for each time. Dots that would cover one another move up or down, if there is space.

@@ -2,13 +2,13 @@
 //! Lines show the speed of memory. If the mark of a query is on a line, the query can become faster
 //! only by moving fewer bytes.
 
-use kuva::render::render::Scene;
 use sixfold_study::numbers::{bytes, duration, figure as shown};
 use sixfold_study::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
 use crate::Picture;
-use crate::canvas::{Axes, Canvas, LogScale, Style, spread, text_width};
+use crate::axes::{Axes, LogScale, spread};
+use crate::canvas::{Canvas, Style, text_width};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table, byte_tick, duration_tick};
@@ -64,7 +64,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         let own: Vec<&TimedRow<'_>> = own.collect();
         (!own.is_empty()).then(|| panel(name, &own, &buffers, &axes))
     });
-    let panels: Vec<Scene> = panels.collect();
+    let panels: Vec<Canvas> = panels.collect();
     let title = format!(
         "Time and bytes that must move: {}",
         file_name(&why.mesh.name)
@@ -93,7 +93,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     })
 }
 
-fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Axes<'_>) -> Scene {
+fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Axes<'_>) -> Canvas {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
     canvas.text([0.0, 14.0], name, Style::new(14).bold(true));
     axes.draw(&mut canvas);
@@ -138,7 +138,7 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
         let relation = row.reads.relation.to_string();
         canvas.text([ACROSS[1] + 15.0, label + 4.0], &relation, Style::new(12));
     }
-    canvas.finish()
+    canvas
 }
 
 /// Returns the ends of the line of the time to read bytes at the speed of `buffer`, as far as it is on the axes.

@@ -1,13 +1,13 @@
 //! The spread over the meshes: a panel for each kind of work, and in it a dot for each mesh and structure.
 
-use kuva::render::render::Scene;
 use serde::Serialize;
 use sixfold_study::numbers::{counted, grouped, rounded_down, times};
 use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
 
 use super::{Mesh, leaders_of};
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style, scatter};
+use crate::axes::{LogScale, scatter};
+use crate::canvas::{Canvas, Style};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::own_columns;
 use crate::figure::{Figure, Table};
@@ -77,7 +77,7 @@ pub(super) fn figure(pool: &Pool, meshes: &[Mesh<'_>], command: &str) -> Option<
         pixels: DOTS,
     };
     let most = panels.iter().map(|panel| panel.lines.len()).max()?;
-    let scenes: Vec<Scene> = panels
+    let scenes: Vec<Canvas> = panels
         .iter()
         .map(|panel| scene(panel, scale, most))
         .collect();
@@ -156,7 +156,7 @@ fn panel<'m>(
     }
 }
 
-fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Scene {
+fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64 + 4.0);
     canvas.text([0.0, 14.0], panel.purpose.name(), Style::new(14).bold(true));
     let meshes = counted(panel.meshes, "mesh", "meshes");
@@ -179,7 +179,7 @@ fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Scene {
     for (number, line) in panel.lines.iter().enumerate() {
         draw_line(&mut canvas, line, scale, HEAD + ROW * (number as f64 + 0.5));
     }
-    canvas.finish()
+    canvas
 }
 
 /// Draws the dots of one structure about the height `y`.
@@ -212,7 +212,7 @@ fn draw_dot(
     backend: &str,
     [x, y]: [f64; 2],
     scale: LogScale,
-    colour: &str,
+    colour: &'static str,
 ) {
     let ratio = match dot.bound {
         true => format!("≥ {}", times(rounded_down(dot.ratio))),

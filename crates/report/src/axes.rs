@@ -1,0 +1,194 @@
+//! Logarithmic axes, the curves of a chart, and places of dots and labels.
+
+use crate::canvas::{Canvas, Style, text_width};
+use crate::colours::{GRID_COLOUR, TEXT_COLOUR};
+
+/// A logarithmic scale from values to pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LogScale {
+    /// The least and the largest value.
+    pub(crate) values: [f64; 2],
+    /// Their places.
+    pub(crate) pixels: [f64; 2],
+}
+
+impl LogScale {
+    /// Returns the place of `value`. Values outside of the scale are placed at its ends.
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let [low, high] = self.values;
+        let [from, to] = self.pixels;
+        let share = (value.clamp(low, high) / low).ln() / (high / low).ln();
+        from + share * (to - from)
+    }
+
+    /// Returns round values in the scale: the powers of ten, or also twice and five times these if
+    /// the scale has fewer than two decades. At most about eight.
+    pub(crate) fn ticks(&self) -> Vec<f64> {
+        let [low, high] = self.values;
+        let decades = (high / low).log10();
+        let factors: &[f64] = if decades < 2.0 {
+            &[1.0, 2.0, 5.0]
+        } else {
+            &[1.0]
+        };
+        let every = (decades / 8.0).ceil().max(1.0) as i32;
+        let first = low.log10().floor() as i32;
+        let last = high.log10().ceil() as i32;
+        let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);
+        let ticks = powers.flat_map(|power| factors.iter().map(move |f| f * 10_f64.powi(power)));
+        let inside = |tick: &f64| (low * 0.999..=high * 1.001).contains(tick);
+        ticks.filter(inside).collect()
+    }
+}
+
+/// Two logarithmic axes of a chart, with grid lines and labels.
+pub(crate) struct Axes<'a> {
+    pub(crate) x: LogScale,
+    pub(crate) y: LogScale,
+    pub(crate) x_label: &'a str,
+    pub(crate) y_label: &'a str,
+    /// Format of the values on each axis.
+    pub(crate) x_format: &'a dyn Fn(f64) -> String,
+    pub(crate) y_format: &'a dyn Fn(f64) -> String,
+}
+
+/// A line of a chart, with a mark at each of its points.
+pub(crate) struct Curve {
+    /// The text beside the last point.
+    pub(crate) name: String,
+    pub(crate) colour: &'static str,
+    /// The points with the titles of their marks.
+    pub(crate) points: Vec<([f64; 2], String)>,
+}
+
+impl Axes<'_> {
+    pub(crate) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.x.place(x), self.y.place(y)]
+    }
+
+    pub(crate) fn draw(&self, canvas: &mut Canvas) {
+        let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
+        let small = Style::new(11);
+        let mut free_from = f64::NEG_INFINITY;
+        for tick in self.x.ticks() {
+            let x = self.x.place(tick);
+            canvas.line([x, top], [x, bottom], GRID_COLOUR, 1.0);
+            let label = (self.x_format)(tick);
+            let half = text_width(&label, 11) / 2.0;
+            if x - half > free_from {
+                canvas.text([x, bottom + 16.0], &label, small.middle());
+                free_from = x + half + 4.0;
+            }
+        }
+        for tick in self.y.ticks() {
+            let y = self.y.place(tick);
+            canvas.line([left, y], [right, y], GRID_COLOUR, 1.0);
+            canvas.text([left - 6.0, y + 4.0], &(self.y_format)(tick), small.end());
+        }
+        canvas.line([left, bottom], [right, bottom], TEXT_COLOUR, 1.0);
+        let middle = (left + right) / 2.0;
+        canvas.text(
+            [middle, bottom + 36.0],
+            self.x_label,
+            Style::new(12).middle(),
+        );
+        // Above the axis, so that it is read without turning the head.
+        canvas.text([left, top - 10.0], self.y_label, Style::new(12));
+    }
+
+    /// Draws `curves`, and their names at the right of the axes. Returns the number of the drawn curves: a
+    /// curve without points is not drawn.
+    pub(crate) fn draw_curves(&self, canvas: &mut Canvas, curves: Vec<Curve>) -> usize {
+        let right = self.x.pixels[1];
+        let [bottom, top] = self.y.pixels;
+        let mut names = Vec::new();
+        for curve in curves {
+            let places = curve.points.iter().map(|(point, _)| self.place(*point));
+            let places: Vec<[f64; 2]> = places.collect();
+            canvas.polyline(&places, curve.colour, 1.5);
+            for ((_, title), &place) in curve.points.into_iter().zip(&places) {
+                canvas.mark(title, |canvas| canvas.circle(place, 2.5, curve.colour));
+            }
+            if let Some(&last) = places.last() {
+                names.push((curve.name, last, curve.colour));
+            }
+        }
+        let heights: Vec<f64> = names.iter().map(|(_, [_, y], _)| *y).collect();
+        let labels = spread(&heights, 14.0, [top, bottom]);
+        for ((name, [x, y], colour), &label) in names.iter().zip(&labels) {
+            let (from, to) = ([x + 3.0, *y], [right + 12.0, label]);
+            // Dashed, because a line across the chart is no curve.
+            match right - x > 12.0 {
+                true => canvas.dashed(from, to, colour, 0.7),
+                false => canvas.line(from, to, colour, 0.7),
+            }
+            canvas.text([right + 15.0, label + 4.0], name, Style::new(12));
+        }
+        names.len()
+    }
+}
+
+/// Returns how far the dot with this number is moved up or down, as a part of the height of its row: from -0.5
+/// to 0.5. The multiples of the golden ratio spread evenly.
+pub(crate) fn scatter(number: usize) -> f64 {
+    (number as f64 * 0.618_034).fract() - 0.5
+}
+
+/// Moves `places` apart so that two are at least `apart` pixels from each other and all are between
+/// the ends, in the same order. Returns the new places.
+pub(crate) fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    order.sort_by(|&a, &b| places[a].total_cmp(&places[b]));
+    let mut spread = places.to_vec();
+    let mut least = low;
+    for &i in &order {
+        spread[i] = spread[i].max(least);
+        least = spread[i] + apart;
+    }
+    let mut most = high;
+    for &i in order.iter().rev() {
+        spread[i] = spread[i].min(most);
+        most = spread[i] - apart;
+    }
+    spread
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_apart_and_keep_their_order() {
+        assert_eq!(
+            spread(&[10.0, 50.0, 12.0], 12.0, [0.0, 100.0]),
+            [10.0, 50.0, 22.0]
+        );
+        // At the lower end of the chart, they move up.
+        assert_eq!(
+            spread(&[98.0, 99.0, 10.0], 12.0, [0.0, 100.0]),
+            [88.0, 100.0, 10.0]
+        );
+        assert!(spread(&[], 12.0, [0.0, 1.0]).is_empty());
+    }
+
+    #[test]
+    fn a_scale_places_its_ends_and_its_ticks() {
+        let scale = LogScale {
+            values: [1.0, 1000.0],
+            pixels: [10.0, 40.0],
+        };
+        let places = [0.1, 1.0, 10.0, 1000.0, 5000.0].map(|value| scale.place(value).round());
+        assert_eq!(places, [10.0, 10.0, 20.0, 40.0, 40.0]);
+        assert_eq!(scale.ticks(), [1.0, 10.0, 100.0, 1000.0]);
+        let close = LogScale {
+            values: [0.9, 21.0],
+            ..scale
+        };
+        assert_eq!(close.ticks(), [1.0, 2.0, 5.0, 10.0, 20.0]);
+        let wide = LogScale {
+            values: [1.0, 1e16],
+            ..scale
+        };
+        assert_eq!(wide.ticks().len(), 9);
+    }
+}

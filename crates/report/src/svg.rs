@@ -1,0 +1,226 @@
+//! Writing pictures as SVG.
+
+use std::fmt::{self, Display, Formatter, Write};
+
+use maud::Escaper;
+
+use crate::canvas::{Anchor, Canvas, DASHES, Paint, Shape, Style};
+use crate::colours::{BACKGROUND, TEXT_COLOUR};
+
+/// Returns an SVG element of the given size with `panels`, each moved to its place. `style` has the style
+/// rules of the element. Without a label, screen readers skip the element.
+pub(crate) fn element(
+    [width, height]: [f64; 2],
+    panels: &[([f64; 2], &Canvas)],
+    label: &str,
+    style: &str,
+) -> String {
+    let mut svg = String::new();
+    let [width, height] = [width, height].map(Number);
+    write(
+        &mut svg,
+        format_args!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             font-family=\"system-ui, sans-serif\" fill=\"{TEXT_COLOUR}\" "
+        ),
+    );
+    match label {
+        "" => svg += "aria-hidden=\"true\">",
+        label => {
+            svg += "role=\"img\" aria-label=\"";
+            write_escaped(&mut svg, label);
+            svg += "\">";
+        }
+    }
+    svg += style;
+    write(
+        &mut svg,
+        format_args!("<rect width=\"100%\" height=\"100%\" fill=\"{BACKGROUND}\"/>"),
+    );
+    for (place, panel) in panels {
+        if *place == [0.0, 0.0] {
+            write_shapes(&mut svg, &panel.shapes);
+            continue;
+        }
+        let [x, y] = place.map(Number);
+        write(
+            &mut svg,
+            format_args!("<g transform=\"translate({x} {y})\">"),
+        );
+        write_shapes(&mut svg, &panel.shapes);
+        svg += "</g>";
+    }
+    svg + "</svg>"
+}
+
+fn write_shapes(svg: &mut String, shapes: &[Shape]) {
+    for shape in shapes {
+        write_shape(svg, shape);
+    }
+}
+
+fn write_shape(svg: &mut String, shape: &Shape) {
+    match shape {
+        Shape::Rect {
+            corner,
+            size,
+            paint,
+        } => {
+            let ([x, y], [width, height]) = (corner.map(Number), size.map(Number));
+            write(
+                svg,
+                format_args!(
+                    "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {paint}/>"
+                ),
+            );
+        }
+        Shape::Circle {
+            centre,
+            radius,
+            paint,
+        } => {
+            let ([x, y], radius) = (centre.map(Number), Number(*radius));
+            write(
+                svg,
+                format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>"),
+            );
+        }
+        Shape::Path { points, paint } => {
+            *svg += "<path d=\"";
+            for (number, point) in points.iter().enumerate() {
+                let step = if number == 0 { 'M' } else { 'L' };
+                let [x, y] = point.map(Number);
+                write(svg, format_args!("{step}{x} {y}"));
+            }
+            if matches!(paint, Paint::Fill(_)) {
+                svg.push('Z');
+            }
+            write(svg, format_args!("\" {paint}/>"));
+        }
+        Shape::Squares {
+            corners,
+            size,
+            fill,
+        } => {
+            *svg += "<path d=\"";
+            for [x, y] in corners {
+                // One decimal: there can be many thousands of them.
+                write(svg, format_args!("M{x:.1} {y:.1}h{size}v{size}h-{size}Z"));
+            }
+            write(svg, format_args!("\" fill=\"{fill}\"/>"));
+        }
+        Shape::Text { at, text, style } => {
+            let [x, y] = at.map(Number);
+            write(svg, format_args!("<text x=\"{x}\" y=\"{y}\" {style}>"));
+            write_escaped(svg, text);
+            *svg += "</text>";
+        }
+        Shape::Mark { title, shapes } => {
+            *svg += "<g><title>";
+            write_escaped(svg, title);
+            *svg += "</title>";
+            write_shapes(svg, shapes);
+            *svg += "</g>";
+        }
+    }
+}
+
+fn write(svg: &mut String, text: fmt::Arguments<'_>) {
+    svg.write_fmt(text).expect("a string can grow");
+}
+
+fn write_escaped(svg: &mut String, text: &str) {
+    Escaper::new(svg)
+        .write_str(text)
+        .expect("a string can grow");
+}
+
+/// A number with at most two decimals.
+struct Number(f64);
+
+impl Display for Number {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        // The sum is 0 if the number is -0.
+        let rounded = (self.0 * 100.0).round() / 100.0 + 0.0;
+        write!(f, "{rounded}")
+    }
+}
+
+impl Display for Paint {
+    /// Writes the attributes of a shape.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Fill(colour) => write!(f, "fill=\"{colour}\""),
+            Self::Stroke {
+                colour,
+                width,
+                dashed,
+            } => {
+                let width = Number(width);
+                write!(f, "fill=\"none\" stroke=\"{colour}\"")?;
+                write!(f, " stroke-width=\"{width}\"")?;
+                if dashed {
+                    let [dash, gap] = DASHES;
+                    write!(f, " stroke-dasharray=\"{dash} {gap}\"")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Display for Style {
+    /// Writes the attributes of a text. The attributes that a text has without them are left out.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "font-size=\"{}\"", self.size)?;
+        match self.anchor {
+            Anchor::Start => {}
+            Anchor::Middle => write!(f, " text-anchor=\"middle\"")?,
+            Anchor::End => write!(f, " text-anchor=\"end\"")?,
+        }
+        if self.bold {
+            write!(f, " font-weight=\"bold\"")?;
+        }
+        match self.colour {
+            TEXT_COLOUR => Ok(()),
+            colour => write!(f, " fill=\"{colour}\""),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_are_written_with_at_most_two_decimals() {
+        let mut canvas = Canvas::new(40.0, 30.5);
+        canvas.mark("<&>".into(), |canvas| {
+            canvas.rect([1.0 / 3.0, -0.001], [3.0, 4.0], "#ff0080");
+            canvas.dashed([5.0, 6.0], [7.0, 8.126], "#000000", 0.5);
+        });
+        canvas.filled(&[[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]], "#000000");
+        canvas.dots([[5.0, 5.0]].into_iter(), 2.4, "#000000");
+        canvas.ring([1.0, 2.0], 3.0, "#000000");
+        let style = Style::new(11).end().bold(true);
+        canvas.text([1.0, 2.0], "a < b", style);
+        canvas.text([1.0, 2.0], "c", Style::new(11).colour("#66686c"));
+        let panels = [([0.0, 0.0], &canvas), ([52.0, 0.0], &canvas)];
+        let svg = element([92.0, 30.5], &panels, "\"label\"", "<style></style>");
+        let shapes = "<g><title>&lt;&amp;&gt;</title>\
+            <rect x=\"0.33\" y=\"0\" width=\"3\" height=\"4\" fill=\"#ff0080\"/>\
+            <path d=\"M5 6L7 8.13\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.5\" stroke-dasharray=\"4 3\"/></g>\
+            <path d=\"M1 1L2 1L2 2Z\" fill=\"#000000\"/>\
+            <path d=\"M3.8 3.8h2.4v2.4h-2.4Z\" fill=\"#000000\"/>\
+            <circle cx=\"1\" cy=\"2\" r=\"3\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.2\"/>\
+            <text x=\"1\" y=\"2\" font-size=\"11\" text-anchor=\"end\" font-weight=\"bold\">a &lt; b</text>\
+            <text x=\"1\" y=\"2\" font-size=\"11\" fill=\"#66686c\">c</text>";
+        let head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"92\" height=\"30.5\" viewBox=\"0 0 92 30.5\" \
+            font-family=\"system-ui, sans-serif\" fill=\"#17181a\" role=\"img\" aria-label=\"&quot;label&quot;\">\
+            <style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
+        let expected = format!("{head}{shapes}<g transform=\"translate(52 0)\">{shapes}</g></svg>");
+        assert_eq!(svg, expected);
+        let hidden = element([1.0, 1.0], &[], "", "");
+        assert!(hidden.contains(" aria-hidden=\"true\">"), "{hidden}");
+    }
+}
