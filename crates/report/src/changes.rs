@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use sixfold_study::numbers::{counted, duration, figure, grouped, times};
+use sixfold_results::numbers::{counted, duration, figure, grouped, times};
 use sixfold_study::{Change, Changes, Finding, Measurement, MeasurementPart, Results, Verdict};
 
 use crate::figure::{Table, TitledTable};

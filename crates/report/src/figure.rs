@@ -1,6 +1,6 @@
 //! One figure with its table of numbers.
 
-use sixfold_study::numbers::grouped;
+use sixfold_results::numbers::grouped;
 
 use crate::Picture;
 

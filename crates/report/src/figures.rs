@@ -14,7 +14,7 @@ pub(crate) mod ratios;
 mod reads;
 mod roofline;
 
-use sixfold_study::numbers::{counted, grouped, times};
+use sixfold_results::numbers::{counted, grouped, times};
 use sixfold_study::{Environment, Finding, MeshReport, Operation, Report, Results, Run};
 
 use crate::data::rows;

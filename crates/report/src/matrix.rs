@@ -1,6 +1,6 @@
 //! All operations on all backends: what tables, rankings and heat maps show.
 
-use sixfold_study::numbers::{duration, figure, rounded_down};
+use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_study::{
     FIRST_TIME_SHOWN, Operation, Pool, Pooled, Quotient, RefusalKind, Report, ResultRow, Standing,
     mean_quotients,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 use sixfold_study::{Finding, Status};
 
 use crate::data::date;

@@ -3,7 +3,7 @@
 
 use crate::figure::Table;
 use crate::figures::break_even;
-use sixfold_study::numbers::{counted, figure, grouped, list, shown_ratio, times};
+use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_study::{
     BackendReport, FEWEST_OF_A_WINNER, OrdersReport, Overall, Pool, Purpose, Report, Results,
     Standing, leaders,

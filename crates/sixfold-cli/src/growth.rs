@@ -20,7 +20,7 @@ use crate::signs::{Signs, right};
 use crate::study::{name_lists, print_end};
 use crate::tables::{stacked, styled, unbroken};
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     let mut session = Session::open(None, &arguments.files, arguments.memory.heap)?;

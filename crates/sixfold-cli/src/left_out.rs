@@ -1,6 +1,6 @@
 //! Notes on missing and estimated figures, below the conclusions: one paragraph for each reason.
 
-use sixfold_study::numbers::duration;
+use sixfold_results::numbers::duration;
 use sixfold_study::{Refusal, Report, ResultRow};
 
 /// Explains why figures of a study are missing or only estimated.

@@ -15,7 +15,7 @@ use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{read_mesh, read_mesh_at, shown};
 use crate::text::print_notice;
 use crate::triangulate::{cut_polygons, triangulated};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;

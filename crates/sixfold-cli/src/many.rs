@@ -28,7 +28,7 @@ use crate::paper;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) use draw::run as draw;
 pub(crate) use labs::LabSelection;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 use sixfold_study::{Agreement, Finding, Policy, Report, ResultRow, Results, StudyMesh};
 
 use crate::arguments::ResultFiles;

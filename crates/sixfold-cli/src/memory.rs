@@ -16,7 +16,7 @@ use crate::load;
 use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
 use crate::text::{TextOutput, hanging_indent, print_stderr};
-use sixfold_study::numbers::{counted, figure, grouped};
+use sixfold_results::numbers::{counted, figure, grouped};
 
 /// The exit code if two of the three counts differ.
 const COUNTS_DIFFER: u8 = 1;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use comfy_table::Cell;
-use sixfold_study::numbers::figure;
+use sixfold_results::numbers::figure;
 use sixfold_study::{NeighboursReport, NeighboursSettings, Policy, SpatialTask};
 
 use crate::arguments::Neighbours;

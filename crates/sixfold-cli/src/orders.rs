@@ -21,7 +21,7 @@ use crate::signs::{Signs, right};
 use crate::study::{name_lists, print_end};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::{figure, shown_ratio};
+use sixfold_results::numbers::{figure, shown_ratio};
 
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();

@@ -20,7 +20,7 @@ use crate::progress::Bar;
 use crate::signs::Signs;
 use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
 use crate::workloads::workload;
-use sixfold_study::numbers::{counted, duration, figure, grouped, rounded_down};
+use sixfold_results::numbers::{counted, duration, figure, grouped, rounded_down};
 
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;

@@ -8,7 +8,7 @@ use sixfold_study::{
 use crate::signs::{Signs, right};
 use crate::tables::{stacked, unbroken};
 use crate::text::hanging_indent;
-use sixfold_study::numbers::figure;
+use sixfold_results::numbers::figure;
 
 /// The style of tables: two spaces between columns, and a line under the header.
 pub(crate) const STYLE: TableStyle =

@@ -1,7 +1,7 @@
 //! The signs of figures in tables: who is fastest, and how a figure was obtained.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::{figure, rounded_down};
+use sixfold_results::numbers::{figure, rounded_down};
 use sixfold_study::{Agreement, MeasuredTask, ResultRow, Standing};
 
 use crate::text::{hanging_indent, width};

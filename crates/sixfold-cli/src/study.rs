@@ -20,7 +20,7 @@ use crate::paper;
 use crate::progress::Bar;
 use crate::results_table::results_table;
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {

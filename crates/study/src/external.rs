@@ -32,8 +32,8 @@ use sixfold_core::Counts;
 use tempfile::TempDir;
 
 use crate::results::rows::BackendReport;
-use crate::sanitize::sanitize;
 use program::{Handshake, Program};
+use sixfold_results::sanitize;
 use sixfold_workload::TimedBackend;
 use sixfold_workload::pages::{HeapReport, Policy};
 use subject::ExternalSubject;

@@ -35,12 +35,10 @@ mod engine;
 mod external;
 mod inspect;
 mod labs;
-pub mod numbers;
 pub mod packages;
 mod refusal;
 mod results;
 mod runner;
-mod sanitize;
 
 pub use engine::effort::Effort;
 pub use engine::heap::{CacheState, CachesReport, free_memory};
@@ -91,7 +89,6 @@ pub use results::rows::{
 };
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
-pub use sanitize::sanitize;
 pub use sixfold::TableBytes;
 pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, Policy};
 pub use sixfold_workload::{

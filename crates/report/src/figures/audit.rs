@@ -1,7 +1,7 @@
 //! The tables of `sixfold memory`: the bytes of each structure, and the bytes that operations
 //! allocate.
 
-use sixfold_study::numbers::grouped;
+use sixfold_results::numbers::grouped;
 use sixfold_study::{Audit, BackendAudit, OperationBytes};
 
 use crate::figure::{Table, TitledTable};

@@ -1,7 +1,7 @@
 //! A figure that shows after how many operations a structure has saved more time than building it
 //! took.
 
-use sixfold_study::numbers::{counted, duration, grouped};
+use sixfold_results::numbers::{counted, duration, grouped};
 use sixfold_study::{Operation, PickReport, Report, ResultRow};
 
 use super::INPUT_BACKEND;

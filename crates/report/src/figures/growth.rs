@@ -1,7 +1,7 @@
 //! Figures of the growth of times with the size of the mesh. On logarithmic axes, the slope of a
 //! line is the exponent of growth.
 
-use sixfold_study::numbers::{bytes, duration, grouped};
+use sixfold_results::numbers::{bytes, duration, grouped};
 use sixfold_study::{CacheLimit, Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};

@@ -4,7 +4,7 @@ mod distribution;
 mod groups;
 mod outliers;
 
-use sixfold_study::numbers::{counted, grouped, list};
+use sixfold_results::numbers::{counted, grouped, list};
 use sixfold_study::{Overall, Pool, Purpose, Report, Results, leaders};
 
 use super::{facts, file_name, heat_map, labs, memory, ranking, recorded_command, slug};

@@ -1,7 +1,7 @@
 //! A figure with one stacked bar for each structure. The parts of a bar are the bytes of the tables
 //! of the structure.
 
-use sixfold_study::numbers::{bytes, figure as shown, grouped};
+use sixfold_results::numbers::{bytes, figure as shown, grouped};
 use sixfold_study::{BackendReport, Report};
 
 use crate::Picture;

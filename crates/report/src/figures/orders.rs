@@ -1,7 +1,7 @@
 //! A figure of the effect that the order of the elements in memory has on the times of each
 //! structure.
 
-use sixfold_study::numbers::{duration, figure as shown, shown_ratio, times};
+use sixfold_results::numbers::{duration, figure as shown, shown_ratio, times};
 use sixfold_study::{Comparison, FEWEST_OF_A_WINNER, OrdersReport, ResultRow};
 
 use super::per_unit;

@@ -1,7 +1,7 @@
 //! Rankings: a panel for each operation, with the time of each structure or external program relative
 //! to the fastest. All panels have one scale.
 
-use sixfold_study::numbers::{duration, grouped, shown_ratio, times};
+use sixfold_results::numbers::{duration, grouped, shown_ratio, times};
 use sixfold_study::{NeighboursReport, PickReport, SpatialTask, Standing};
 
 use super::per_unit;

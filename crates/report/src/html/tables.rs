@@ -1,8 +1,8 @@
 //! The tables of the page: the structures by kind of work, all operations, and plain tables.
 
 use maud::{Markup, html};
+use sixfold_results::numbers::counted;
 use sixfold_study::Quotient;
-use sixfold_study::numbers::counted;
 
 use crate::figure::Table;
 use crate::matrix::{Cell, Line, Matrix, Source};

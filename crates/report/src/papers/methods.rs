@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use sixfold_study::numbers::{bytes, counted, grouped};
+use sixfold_results::numbers::{bytes, counted, grouped};
 use sixfold_study::{
     CacheState, Environment, FEWEST_OF_A_WINNER, Figure as TimeRow, Finding, Policy, Report,
     Results, Run, Status,

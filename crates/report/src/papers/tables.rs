@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use sixfold_study::numbers::{figure as shown, rounded_down};
+use sixfold_results::numbers::{figure as shown, rounded_down};
 use sixfold_study::{Operation, Pool, Report, ResultRow, Results};
 
 use crate::figures::facts;

@@ -25,7 +25,7 @@ use crate::listed_folder::remove;
 use crate::load::file_hash;
 use crate::output::{Output, cannot_write};
 use crate::text::print_notice;
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(super) struct Folder {
     path: PathBuf,

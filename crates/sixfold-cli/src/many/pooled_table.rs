@@ -1,7 +1,7 @@
 //! The table of the results of many meshes.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::{counted, figure, rounded_down};
+use sixfold_results::numbers::{counted, figure, rounded_down};
 use sixfold_study::{Overall, Pool, Pooled, Purpose};
 
 use crate::tables::{stacked, unbroken};

@@ -5,7 +5,7 @@ use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, P
 use sixfold_workload::{CacheFlusher, Start};
 use sysinfo::{MemoryRefreshKind, System};
 
-use crate::numbers::bytes;
+use sixfold_results::numbers::bytes;
 
 /// Part of all memory that must stay free.
 const MIN_FREE: f64 = 0.05;

@@ -23,7 +23,7 @@ use super::program::{PROTOCOL, Program};
 use super::subject::ExternalSubject;
 use crate::labs::pick::{AskedCount, Qualification};
 use crate::refusal;
-use crate::sanitize::sanitize;
+use sixfold_results::sanitize;
 
 /// How programs run in child processes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use sixfold_workload::pages::Policy;
 
 use crate::labs::pick::AskedCount;
-use crate::sanitize::sanitize;
+use sixfold_results::sanitize;
 
 /// Version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;

@@ -24,7 +24,6 @@ use crate::engine::measure::Progress;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::labs::study::report::{Report, bytes_of};
 use crate::labs::study::{Settings, StudyError, study_on};
-use crate::numbers::bytes;
 use crate::refusal::Candidate;
 use crate::results::figure::{Counted, Figure, Status, samples_of};
 use crate::results::finding::LabFinding;
@@ -33,6 +32,7 @@ use crate::results::rows::{
     Agreement, BackendReport, MeshReport, ResultRow, Samples, check_samples,
 };
 use crate::results::run::{Run, RunSettings};
+use sixfold_results::numbers::bytes;
 
 /// The stage before the times are measured.
 const MEASURING_MEMORY: Progress<'_> = Progress {

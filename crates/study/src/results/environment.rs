@@ -7,7 +7,7 @@ use sixfold_workload::MachineClock;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 use crate::engine::heap::{CacheState, CachesReport, Memory};
-use crate::numbers::bytes;
+use sixfold_results::numbers::bytes;
 use sixfold_workload::pages::{HeapReport, Policy};
 use sixfold_workload::{Cache, caches};
 

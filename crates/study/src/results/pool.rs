@@ -16,13 +16,13 @@ use serde::{Deserialize, Serialize};
 use sixfold_workload::Operation;
 
 use crate::labs::study::Report;
-use crate::numbers::{grouped, rounded_down, times};
 pub(crate) use means::mean_over_sizes;
 pub use means::overall;
 use means::pooled;
 pub use sentences::leaders;
 use sentences::warnings;
 pub(crate) use sentences::{next_best, not_ranked};
+use sixfold_results::numbers::{grouped, rounded_down, times};
 
 /// The results over all meshes of a collection.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]

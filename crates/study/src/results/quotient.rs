@@ -5,9 +5,9 @@ use sixfold_workload::{Operation, Time};
 use crate::engine::disturbance::undisturbed;
 use crate::engine::ranking::ratio;
 use crate::labs::study::Report;
-use crate::numbers::shown_ratio;
 use crate::results::pool::{decade, mean_over_sizes};
 use crate::results::rows::{Agreement, ResultRow, Samples};
+use sixfold_results::numbers::shown_ratio;
 
 /// The time of one backend divided by the time of another.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,9 +11,9 @@ use sysinfo::System;
 use crate::engine::effort::Effort;
 use crate::engine::heap::{CacheState, Memory};
 use crate::labs::study::Settings;
-use crate::numbers::counted;
 use crate::results::environment::Environment;
 use crate::results::merge::MergeError;
+use sixfold_results::numbers::counted;
 
 /// How results were measured: the command, its settings, the program and the machine.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]

@@ -1,7 +1,7 @@
 //! The spread over the meshes: a panel for each kind of work, and in it a dot for each mesh and structure.
 
 use serde::Serialize;
-use sixfold_study::numbers::{counted, grouped, rounded_down, times};
+use sixfold_results::numbers::{counted, grouped, rounded_down, times};
 use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
 
 use super::{Mesh, leaders_of};

@@ -1,6 +1,6 @@
 //! The answer by size and kind of mesh.
 
-use sixfold_study::numbers::{counted, grouped, list};
+use sixfold_results::numbers::{counted, grouped, list};
 use sixfold_study::{Overall, Pool, Purpose, Report, leaders, overall};
 
 use super::{Mesh, names};

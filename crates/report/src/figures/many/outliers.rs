@@ -1,6 +1,6 @@
 //! Meshes on which a structure behaves unlike on the others.
 
-use sixfold_study::numbers::{counted, times};
+use sixfold_results::numbers::{counted, times};
 use sixfold_study::{Pool, Purpose, median_and_deviation};
 
 use super::{Mesh, Relative, kind, leaders_of};

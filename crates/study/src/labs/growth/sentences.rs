@@ -2,8 +2,8 @@
 
 use super::{CacheLimit, Fit, SizeReport};
 use crate::labs::slope::Slope;
-use crate::numbers::{grouped, list, times};
 use crate::results::rows::{Agreement, ResultRow, Standing};
+use sixfold_results::numbers::{grouped, list, times};
 use sixfold_workload::{Cache, Operation, last_level_bytes};
 
 pub(super) fn sentences(

@@ -1,8 +1,8 @@
 //! The sentences of the report.
 
 use super::{Cheapest, NeighboursReport, SpatialTask};
-use crate::numbers::{grouped, list, rounded};
 use crate::results::rows::Standing;
+use sixfold_results::numbers::{grouped, list, rounded};
 
 /// Returns the fastest indices of all tasks, then for each kind of query the index with the least
 /// total time, and the noise.

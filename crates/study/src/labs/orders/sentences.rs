@@ -7,8 +7,8 @@ use sixfold_workload::Operation;
 
 use super::{Comparison, Larger};
 use crate::labs::study::sentences::noise;
-use crate::numbers::{counted, shown_ratio, times};
 use crate::results::rows::{Agreement, Control, ResultRow, Standing};
+use sixfold_results::numbers::{counted, shown_ratio, times};
 
 /// The results of one operation on one structure in all orders.
 type Pair<'r> = &'r [ResultRow];

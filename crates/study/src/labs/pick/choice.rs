@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::labs::pick::report::{PartCost, Ranked};
-use crate::numbers::{list, times};
+use sixfold_results::numbers::{list, times};
 
 /// Two backends count as equally fast if the ratio of their times is at most this value. Another
 /// program, compiler or machine can change the ratio by 5 %.

@@ -29,9 +29,9 @@ use crate::labs::pick::report::{
 use crate::labs::pick::tasks::{TaskPlan, with_own_time};
 use crate::labs::pick::{MeasureContext, PickError};
 use crate::labs::study::StudyError;
-use crate::numbers::{counted, duration};
 use crate::refusal;
 use crate::results::run::{Run, RunSettings};
+use sixfold_results::numbers::{counted, duration};
 
 /// Building is timed in every n-th round.
 const BUILDS_EVERY: u32 = 3;

@@ -5,9 +5,9 @@ use crate::engine::warnings::machine_warnings;
 use crate::labs::pick::choice::{Choice, EQUAL_UP_TO};
 use crate::labs::pick::needs::Need;
 use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
-use crate::numbers::{counted, duration, figure, grouped, list, rounded};
 use crate::packages;
 use crate::results::rows::Samples;
+use sixfold_results::numbers::{counted, duration, figure, grouped, list, rounded};
 use sixfold_workload::Action;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.

@@ -8,12 +8,12 @@ use sixfold_workload::{Action, Asked, Workload};
 use crate::engine::timer::Timer;
 use crate::labs::pick::choice::Choice;
 use crate::labs::pick::needs::Need;
-use crate::numbers::{grouped, rounded_down, shown_ratio, times};
 use crate::results::figure::{Figure, Status, samples_of};
 use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
 use crate::results::rows::{MeshReport, ResultRow, Samples, check_samples};
 use crate::results::run::Run;
+use sixfold_results::numbers::{grouped, rounded_down, shown_ratio, times};
 
 /// The name of the whole mix in samples and figures.
 pub(crate) const MIX: &str = "mix";

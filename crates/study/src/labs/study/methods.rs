@@ -2,8 +2,8 @@
 
 use sixfold::subdivision::Method;
 
-use crate::numbers::{rounded_down, shown_ratio, times};
 use crate::results::rows::{BackendReport, ResultRow};
+use sixfold_results::numbers::{rounded_down, shown_ratio, times};
 use sixfold_workload::Operation;
 
 /// Minimum ratio of two methods that is reported.

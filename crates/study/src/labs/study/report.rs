@@ -6,7 +6,6 @@ use sixfold_workload::Operation;
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
 use crate::labs::study::sentences::{how_sure, mean_over};
-use crate::numbers::shown_ratio;
 use crate::results::figure::{Figure, Rows};
 use crate::results::finding::LabFinding;
 use crate::results::pool::{Overall, Purpose, overall};
@@ -15,6 +14,7 @@ use crate::results::rows::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, Standing,
 };
 use crate::results::run::Run;
+use sixfold_results::numbers::shown_ratio;
 
 /// The result of a study.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]

@@ -5,9 +5,9 @@ use sixfold::subdivision::Scheme;
 
 use crate::labs::study::Report;
 use crate::labs::study::methods::methods;
-use crate::numbers::{counted, grouped, list};
 use crate::results::pool::{self, Overall, Purpose, leaders, not_ranked};
 use crate::results::rows::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
+use sixfold_results::numbers::{counted, grouped, list};
 use sixfold_workload::Operation;
 
 /// Returns the answer in at most three sentences: which backend for what, by how much, and how sure.

@@ -3,7 +3,7 @@
 use sixfold_workload::SCAN_SAMPLE;
 
 use super::{Bound, WhyRow};
-use crate::numbers::{counted, figure, grouped, list};
+use sixfold_results::numbers::{counted, figure, grouped, list};
 
 /// Describes the rows, which are sorted by relation: the backends with the fewest cache lines for
 /// each query, what limits the times, and how exact the figures are.

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::{CompareError, Measurement};
-use crate::numbers::counted;
 use crate::results::document::Results;
 use crate::results::figure::Figure;
 use crate::results::finding::Finding;
 use crate::results::rows::MeshReport;
+use sixfold_results::numbers::counted;
 
 /// The meshes that two documents have in common.
 pub(super) struct CommonMeshes<'r> {

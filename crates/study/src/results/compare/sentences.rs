@@ -1,7 +1,7 @@
 //! Describes the changes between two documents in sentences.
 
 use super::{Changes, Measurement, Verdict};
-use crate::numbers::counted;
+use sixfold_results::numbers::counted;
 
 impl Changes {
     /// Returns sentences that describe the changes.

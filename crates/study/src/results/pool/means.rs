@@ -9,8 +9,8 @@ use sixfold_workload::Operation;
 use super::{Overall, Pooled, Purpose, common, decade, leaders, not_ranked};
 use crate::engine::statistics::geometric_mean;
 use crate::labs::study::Report;
-use crate::numbers::shown_ratio;
 use crate::results::rows::{Agreement, ResultRow, Standing};
+use sixfold_results::numbers::shown_ratio;
 
 /// A time in nanoseconds.
 #[derive(Clone, Copy)]

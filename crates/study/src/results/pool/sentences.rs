@@ -5,7 +5,7 @@ use sixfold::structure_infos;
 use super::{Holding, Overall, Pool};
 use crate::labs::pick::EQUAL_UP_TO;
 use crate::labs::study::Report;
-use crate::numbers::{counted, list};
+use sixfold_results::numbers::{counted, list};
 
 impl Pool {
     pub(super) fn describe(&self, studied: usize) -> Vec<String> {
