@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold_report::{Compared, PaperFile, ReportPage};
-use sixfold_study::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
+use sixfold_results::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;

@@ -2,9 +2,8 @@
 
 use std::process::ExitCode;
 
-use sixfold_study::{
-    Audit, Backend, BackendAudit, MAX_SCANNED_FACES, Policy, Settings, audit, count_allocations,
-};
+use sixfold_study::{Backend, MAX_SCANNED_FACES, Settings, audit, count_allocations};
+use sixfold_results::{Audit, BackendAudit, Policy};
 
 use crate::AllocatorCounters;
 use crate::arguments::Memory;
@@ -51,7 +50,7 @@ pub(crate) fn run(
     status.clear();
 
     // If every backend refuses the mesh, the list of reasons is the result.
-    let refusal_error = audit.refusal_error();
+    let refusal_error = sixfold_study::none_holds(&audit);
     if refusal_error.is_none() {
         print(&audit, &mut session.text);
     }

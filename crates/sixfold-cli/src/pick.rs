@@ -4,10 +4,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_study::{
-    BreakEven, ElementKind, FEWEST_OF_A_WINNER, OwnBytes, OwnData, Part, PickReport, PickSettings,
-    Prediction, ProgramSettings, Ranked, StudyMesh, Suite, Trace, Workload,
-};
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_study::{ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload};
+use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
 
 use crate::arguments::{Pick, ReadFiles};
 use crate::column_table::{Column, column_table};
@@ -131,7 +130,7 @@ pub(crate) fn study_meshes(
 
 /// Describes the program's own data. Returns an empty text if the program has no data of its own.
 fn own_data(data: &OwnData) -> String {
-    let kinds = ElementKind::ALL.map(|kind| (kind.name(), data.of(kind)));
+    let kinds = ElementKind::ALL.map(|kind| (kind.name(), kind.own_bytes(data)));
     let described = kinds
         .iter()
         .filter(|(_, bytes)| *bytes != OwnBytes::default());

@@ -2,7 +2,7 @@
 //! there is only one backend.
 
 use sixfold_results::numbers::{figure, grouped};
-use sixfold_study::{BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
+use sixfold_results::{BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
 
 use crate::column_table::{Column, column_table, short_figure};
 use crate::text::hanging_indent;

@@ -29,43 +29,10 @@ use std::hint::black_box;
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use guard::{HeapGuard, HeapPolicyConflict};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
-use serde::{Deserialize, Serialize};
-
-pub use guard::{HeapGuard, HeapPolicyConflict};
-
-sixfold_core::named! {
-    /// A rule for the memory pages of freed blocks.
-    #[derive(Default)]
-    pub enum Policy: "heap policy" {
-        /// Freed pages stay in the process. Later allocations use the freed pages again, without
-        /// page faults.
-        #[default]
-        Kept = "kept",
-        /// The allocator decides by its own rules which freed pages it keeps.
-        System = "system",
-    }
-}
-
-/// The state of the heap during a measurement.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct HeapReport {
-    /// The active policy. It can differ from the requested policy.
-    pub policy: Policy,
-    /// The reason why the requested policy is not active; `None` if the requested policy is active.
-    #[serde(default)]
-    pub reason: Option<String>,
-    /// The name and version of the allocator, such as `glibc 2.36`.
-    pub allocator: String,
-    /// Size of a memory page in bytes, if known.
-    pub page_bytes: Option<u64>,
-    /// The mode of transparent huge pages, if known: `always`, `madvise` or `never`.
-    pub transparent_huge_pages: Option<String>,
-    /// True if page faults are counted.
-    pub counts_faults: bool,
-}
 
 /// Minimum page size of all platforms, in bytes.
 const MIN_PAGE_BYTES: usize = 4096;
@@ -400,6 +367,8 @@ mod platform {
 
 #[cfg(test)]
 mod tests {
+    use sixfold_results::Policy;
+
     use super::*;
 
     #[test]

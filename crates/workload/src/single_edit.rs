@@ -3,10 +3,10 @@
 use sixfold::{Edit, MeshEdit, PolygonMesh, Representation};
 
 use crate::backend::Backend;
-use crate::clock::Time;
 use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
 use crate::series::{ReusedCopies, Series};
+use sixfold_results::Time;
 
 /// An edit that is done at several faces of a closed triangle mesh.
 ///

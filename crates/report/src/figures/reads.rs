@@ -1,7 +1,7 @@
 //! The table of the reads of queries, without times.
 
+use sixfold_results::Why;
 use sixfold_results::numbers::figure;
-use sixfold_study::Why;
 
 use crate::figure::{Table, TitledTable};
 

@@ -3,7 +3,7 @@
 //! only by moving fewer bytes.
 
 use sixfold_results::numbers::{bytes, duration, figure as shown};
-use sixfold_study::{Bound, BufferSpeed, Timed, Why, WhyRow};
+use sixfold_results::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
 use crate::Picture;

@@ -16,7 +16,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sixfold_report::ReportPage;
-use sixfold_study::{Finding, Results, RunSettings, Settings, sha256_of};
+use sixfold_study::{Settings, sha256_of};
+use sixfold_results::{Finding, Results, RunSettings};
 
 use super::meshes::Mesh;
 use crate::arguments::Study;
@@ -65,7 +66,7 @@ impl Folder {
         let wanted = RunSettings {
             triangulate: arguments.triangulate,
             strict: arguments.strict,
-            ..RunSettings::of_study(settings)
+            ..settings.run_settings()
         };
         for (file, text) in files {
             let Ok(saved) = Results::read_json(&text) else {

@@ -11,9 +11,8 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use sixfold_workload::pages::Policy;
+use sixfold_results::{AskedCount, Policy};
 
-use crate::labs::pick::AskedCount;
 use sixfold_results::sanitize;
 
 /// Version of the protocol.

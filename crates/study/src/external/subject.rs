@@ -1,7 +1,8 @@
 //! An external program as a backend of the measurement.
 
 use sixfold::QueryCost;
-use sixfold_workload::{Clock, Job, Outcome, Run, Series, Time, TimedBackend};
+use sixfold_results::Time;
+use sixfold_workload::{Clock, Job, Outcome, Run, Series, TimedBackend};
 
 use super::program::{Program, Request, Response};
 use sixfold_results::sanitize;

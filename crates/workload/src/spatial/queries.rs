@@ -7,6 +7,7 @@ use sixfold::spatial::{
     FaceTriangle, Ray, SpatialError, VertexPoint, polygon_points, polygon_triangles,
 };
 use sixfold::{FaceId, PolygonMesh, VertexId};
+use sixfold_results::QueryPoints;
 
 /// Maximum number of query points.
 pub const MAX_QUERIES: usize = 10_000;
@@ -21,21 +22,6 @@ const RADIUS: f64 = 2.0;
 pub type Vertex = VertexPoint<VertexId>;
 /// An item of the indices of triangles.
 pub type Triangle = FaceTriangle<FaceId>;
-
-sixfold_core::named! {
-    /// Where the query points are.
-    #[derive(Default)]
-    #[non_exhaustive]
-    pub enum QueryPoints: "set of query points" {
-        /// Near the surface: vertices, each moved by up to 1 % of the diagonal of the bounding box,
-        /// in the order of the mesh. Registration and the distance between similar meshes have such
-        /// queries.
-        #[default]
-        Near = "near",
-        /// Anywhere in the bounding box, in random order. Signed distance fields have such queries.
-        Box = "box",
-    }
-}
 
 /// The input of all indices: what they store, and what they are asked.
 pub struct Input {
