@@ -205,7 +205,7 @@ fn no_sample_of_a_study_faults(frequency: usize, operations: Vec<Operation>) -> 
         samples += faults.len();
     }
     // Building a mesh on fresh pages causes page faults.
-    let builds = report.rows("build".parse().expect("an operation"));
+    let builds = report.rows("build");
     for row in builds.filter(|row| row.first_samples > 0) {
         assert!(row.first_faults > Some(0), "{row:?}");
     }
