@@ -59,7 +59,7 @@ fn check_study(seventh: Backend, refused: usize) {
     let rows: Vec<_> = rows.filter(|row| row.backend == seventh.name()).collect();
     assert_eq!(rows.len(), Operation::ALL.len() - refused);
     for row in rows {
-        let operation = row.operation;
+        let operation = &row.operation;
         assert_eq!(row.agreement, Agreement::Same, "{operation}");
         assert_ne!(row.standing, Some(Standing::Alone), "{operation}");
         assert!(row.median_ns.is_some_and(|ns| ns > 0.0), "{operation}");
