@@ -13,8 +13,12 @@ use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
-use sixfold_study::{Backend, BackendRunner, Effort, HeapGuard, MachineClock, Operation, PickError, PickSettings, Series, Settings, Start, StudyError, StudyMesh, built_in, free_memory, pages, pick, study, timed};
 use sixfold_results::{HeapReport, Policy};
+use sixfold_study::{
+    Backend, BackendRunner, Effort, HeapGuard, MachineClock, Operation, PickError, PickSettings,
+    Series, Settings, Start, StudyError, StudyMesh, built_in, free_memory, pages, pick, study,
+    timed,
+};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 

@@ -10,8 +10,12 @@ use sixfold::{
     Creases, EditableIndexedFaceSet, FaceVertexMesh, PolygonMesh, Representation,
     repeat_for_structures, shapes,
 };
-use sixfold_study::{Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Operation, PickSettings, Refiner, Series, Settings, SingleEdit, StudyError, StudyMesh, SubdivisionJob, Way, built_in, inspect, pick, study};
 use sixfold_results::{Agreement, Need, PickReport, Policy, Standing};
+use sixfold_study::{
+    Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Operation, PickSettings,
+    Refiner, Series, Settings, SingleEdit, StudyError, StudyMesh, SubdivisionJob, Way, built_in,
+    inspect, pick, study,
+};
 
 // The conformance suite uses this file too; see ARCHITECTURE.md.
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]

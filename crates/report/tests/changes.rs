@@ -5,9 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 use sixfold_report::{Compared, Figure, ReportPage};
-use sixfold_results::{SCHEMA, 
+use sixfold_results::{
     BytesChange, Change, Changes, Failed, FailureKind, Finding, Measurement, NewWinner, Results,
-    SettingChange, Verdict,
+    SCHEMA, SettingChange, Verdict,
 };
 use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 

@@ -2,8 +2,8 @@
 
 use sixfold::repair::Measures;
 use sixfold::{Distribution, Facts, structure_infos};
-use sixfold_study::{Settings, StudyMesh};
 use sixfold_results::{BackendReport, MeshReport};
+use sixfold_study::{Settings, StudyMesh};
 
 use crate::text::{TextOutput, coordinate, figure, hanging_indent, sanitize};
 use sixfold_results::numbers::{counted, grouped};

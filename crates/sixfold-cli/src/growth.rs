@@ -4,8 +4,10 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 use comfy_table::Cell;
-use sixfold_study::{GrowthError, GrowthSettings, SCALABLE_SHAPES, ScalableShape, Settings, StudyError};
 use sixfold_results::{Fit, GrowthReport, ResultRow, SizeReport, Slope};
+use sixfold_study::{
+    GrowthError, GrowthSettings, SCALABLE_SHAPES, ScalableShape, Settings, StudyError,
+};
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;

@@ -7,8 +7,8 @@ use sixfold::glam::DVec3;
 use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
 use sixfold::{Creases, PolygonMesh, shapes};
-use sixfold_study::{StudyMesh, sha256_of};
 use sixfold_results::Results;
+use sixfold_study::{StudyMesh, sha256_of};
 
 use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;

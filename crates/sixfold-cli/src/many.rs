@@ -12,8 +12,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_study::{Settings, StudyError, StudyMesh};
 use sixfold_results::{Failed, FailureKind, Finding, Report, Results};
+use sixfold_study::{Settings, StudyError, StudyMesh};
 
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;

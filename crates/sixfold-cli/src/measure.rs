@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sixfold_results::numbers::counted;
-use sixfold_study::StudyMesh;
 use sixfold_results::{Agreement, Finding, Policy, Report, ResultRow, Results};
+use sixfold_study::StudyMesh;
 
 use crate::arguments::ResultFiles;
 use crate::failure::Failure;

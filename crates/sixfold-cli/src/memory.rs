@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use sixfold_study::{Backend, MAX_SCANNED_FACES, Settings, audit, count_allocations};
 use sixfold_results::{Audit, BackendAudit, Policy};
+use sixfold_study::{Backend, MAX_SCANNED_FACES, Settings, audit, count_allocations};
 
 use crate::AllocatorCounters;
 use crate::arguments::Memory;

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Cell, Table};
 use sixfold::shapes::Order;
-use sixfold_study::{DEFAULT_OPERATIONS, Settings, StudyError, StudyMesh};
 use sixfold_results::{Comparison, OrdersReport, ResultRow};
+use sixfold_study::{DEFAULT_OPERATIONS, Settings, StudyError, StudyMesh};
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;

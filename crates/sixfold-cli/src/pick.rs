@@ -5,8 +5,10 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
-use sixfold_study::{ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload};
 use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
+use sixfold_study::{
+    ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
+};
 
 use crate::arguments::{Pick, ReadFiles};
 use crate::column_table::{Column, column_table};

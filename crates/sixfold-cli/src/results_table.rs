@@ -1,8 +1,10 @@
 //! The table of a study, with a row per operation and a column per backend.
 
 use comfy_table::{Cell, LineStyle, Table, TableStyle};
+use sixfold_results::{
+    BackendReport, ControlRow, FIRST_TIME_SHOWN, OperationGroup, Report, ResultRow, Standing,
+};
 use sixfold_study::Operation;
-use sixfold_results::{BackendReport, ControlRow, FIRST_TIME_SHOWN, OperationGroup, Report, ResultRow, Standing};
 
 use crate::signs::{Signs, right};
 use crate::tables::{stacked, unbroken};

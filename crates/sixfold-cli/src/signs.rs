@@ -146,7 +146,11 @@ mod tests {
             elements: Some(10),
             ns_per_element: Some(12_345.6),
             standing,
-            ..ResultRow::new("half-edge", Operation::Build.name(), Operation::Build.unit())
+            ..ResultRow::new(
+                "half-edge",
+                Operation::Build.name(),
+                Operation::Build.unit(),
+            )
         }
     }
 

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use sixfold_study::{Settings, StudyError, StudyMesh};
 use sixfold_results::{BackendReport, Environment, Finding, Report, Run, Timer};
+use sixfold_study::{Settings, StudyError, StudyMesh};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};

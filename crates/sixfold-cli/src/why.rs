@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_study::{Effort, Settings, StudyError, StudyMesh, Timing, WhySettings};
 use sixfold_results::{Policy, WhyRow};
+use sixfold_study::{Effort, Settings, StudyError, StudyMesh, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;

@@ -16,8 +16,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sixfold_report::ReportPage;
-use sixfold_study::{Settings, sha256_of};
 use sixfold_results::{Finding, Results, RunSettings};
+use sixfold_study::{Settings, sha256_of};
 
 use super::meshes::Mesh;
 use crate::arguments::Study;
