@@ -23,6 +23,8 @@
 //!   tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and the reason why an edit is refused.
+//! - [`ElementName`] and [`ElementNames`]: names such as `v3` and `f2`, which mean the same elements
+//!   on every structure, also after edits.
 //! - [`MeshWithData`]: a mesh together with values for its vertices, edges or faces; each edit of
 //!   the mesh also updates the values.
 //! - [`Creases`]: the edges and vertices that stay sharp under subdivision, and for how many
@@ -78,6 +80,8 @@ pub use edit::edit_log::{Changes, EditLog, EditRecord, OldToNew};
 pub use edit::element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
 #[doc(hidden)]
 pub use edit::element_data::{Edges, ElementKind, Faces, Vertices};
+pub use edit::element_name::{ElementName, NoElementName};
+pub use edit::element_names::{ElementNames, FacesBefore, NameChanges};
 pub use edit::follow_edits::{AcceptedEdit, FollowEdits};
 pub use edit::mesh_edit::{MeshEdit, Refusal};
 pub use edit::mesh_with_data::MeshWithData;

@@ -6,11 +6,10 @@ use std::ops::Range;
 
 use serde::Serialize;
 use sixfold::{MeshEdit, PolygonMesh, Relation};
-use sixfold_core::{Described, VertexId};
+use sixfold_core::{Described, ElementName, VertexId};
 
 use crate::edit::EditTrace;
 use crate::edit_command::EditCommand;
-use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
 use crate::records::{Records, RowsOf, records, row_name};
@@ -243,9 +242,9 @@ impl<P: Described> Shown for NamedMesh<P> {
         let position = |v| self.mesh.position(v).to_array();
         let corners = |f| {
             let corners = self.mesh.face_vertices(f);
-            corners.map(|v| self.vertices.number(v)).collect()
+            corners.map(|v| self.vertex_number(v)).collect()
         };
-        let (vertices, faces) = (self.vertices.handles(), self.faces.handles());
+        let (vertices, faces) = (self.names.vertices(), self.names.faces());
         let geometry = Geometry {
             vertices: vertices.iter().map(|v| v.map(position)).collect(),
             faces: faces.iter().map(|f| f.map(corners)).collect(),

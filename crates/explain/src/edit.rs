@@ -2,8 +2,10 @@
 
 use rustc_hash::FxHashSet;
 use serde::Serialize;
-use sixfold::{Edit, EditRecord, MeshEdit, Point, Refusal};
-use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
+use sixfold::{Edit, EditRecord, Handle, MeshEdit, Point, Refusal};
+use sixfold_core::{
+    Access, AccessKind, Described, ElementName, FacesBefore, Field, NameChanges, RecordTable,
+};
 
 use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
@@ -34,9 +36,9 @@ pub struct EditTrace {
     pub rows: Vec<RowChange>,
     /// The rows that the edit only reads, by table and row.
     pub only_read: Vec<ReadRows>,
-    /// The names of elements that the edit made.
+    /// The names of new elements.
     pub created: Vec<String>,
-    /// The names of elements that the edit deleted.
+    /// The names that no longer name an element.
     pub removed: Vec<String>,
     /// The elements whose rows have other numbers after the edit: the name of the element, and the rows
     /// before and after.
@@ -104,11 +106,32 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     /// Runs an edit. Returns the rule that it breaks, if the structure refuses it.
     pub(crate) fn run(&mut self, command: &EditCommand) -> Result<Option<String>, ExplainError> {
         let mut record = EditRecord::new();
+        let cut = self.faces_before(command);
         let refusal = self.run_recorded(command, &mut record)?;
+        self.follow(&record, &cut);
         self.probe.take();
-        self.vertices.follow('v', &record.vertices);
-        self.faces.follow('f', &record.faces);
         Ok(refusal)
+    }
+
+    /// Returns the faces at the edge or the face that an edit takes.
+    fn faces_before(&self, command: &EditCommand) -> FacesBefore {
+        let mut elements = command.elements.iter().flatten();
+        let (edge, face) = match elements.next() {
+            Some(&name @ ElementName::Edge(_)) => (self.edge(name).ok(), None),
+            Some(&name) => (None, self.face(name).ok()),
+            None => (None, None),
+        };
+        self.names.faces_before(&self.mesh, edge, face)
+    }
+
+    fn follow(
+        &mut self,
+        record: &EditRecord<P>,
+        cut: &FacesBefore,
+    ) -> NameChanges<P::Vertex, P::Face> {
+        let changes = self.names.follow(&self.mesh, record, cut);
+        self.has_moved |= !changes.moved_vertices.is_empty() || !changes.moved_faces.is_empty();
+        changes
     }
 
     /// Runs an edit, and returns what it does, with at most `most` entries in each list. O(size of the mesh),
@@ -120,6 +143,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     ) -> Result<EditTrace, ExplainError> {
         let (before, elements) = (self.mesh.clone(), self.elements());
         let mut record = EditRecord::new();
+        let cut = self.faces_before(command);
         let refusal = self.run_recorded(command, &mut record)?;
         let accesses = self.probe.take();
         let mut changes = Changed::new(most);
@@ -129,8 +153,16 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         self.probe.take();
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();
         let (reads, writes) = (count(AccessKind::Read), count(AccessKind::Write));
-        let vertices = self.vertices.follow('v', &record.vertices);
-        let faces = self.faces.follow('f', &record.faces);
+        let names = self.follow(&record, &cut);
+        self.probe.take();
+        let shown = |names: Vec<ElementName>| {
+            let names = names.iter().take(most);
+            names.map(ElementName::to_string).collect()
+        };
+        let moved_vertices = names.moved_vertices.iter();
+        let moved_vertices = moved_vertices.map(|&(v, rows)| moved(ElementName::Vertex(v), rows));
+        let moved_faces = names.moved_faces.iter();
+        let moved_faces = moved_faces.map(|&(f, rows)| moved(ElementName::Face(f), rows));
         Ok(EditTrace {
             structure: self.structure,
             edit: command.to_string(),
@@ -142,9 +174,9 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
             changed: changes.changed,
             rows: changes.rows,
             only_read: changes.only_read,
-            created: first(most, vertices.created, faces.created),
-            removed: first(most, vertices.removed, faces.removed),
-            renamed: first(most, vertices.renamed, faces.renamed),
+            created: shown(names.created),
+            removed: shown(names.removed),
+            renamed: moved_vertices.chain(moved_faces).take(most).collect(),
         })
     }
 
@@ -272,9 +304,10 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     }
 }
 
-/// Returns the first `most` entries of two lists.
-fn first<T>(most: usize, one: Vec<T>, other: Vec<T>) -> Vec<T> {
-    one.into_iter().chain(other).take(most).collect()
+/// Returns the name of an element, and its handles before and after an edit, as text.
+fn moved<H: Handle>(name: ElementName, handles: [H; 2]) -> [String; 3] {
+    let [before, after] = handles.map(|handle| format!("{handle:?}"));
+    [name.to_string(), before, after]
 }
 
 /// The rows that an edit changes, writes or reads.

@@ -4,8 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use sixfold::{Edit, Point};
+use sixfold_core::ElementName;
 
-use crate::element::ElementName;
 use crate::error::ExplainError;
 
 /// An edit, with its arguments by name. Without a position, an edit that needs one takes the middle of

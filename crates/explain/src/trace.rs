@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 use sixfold::Relation;
-use sixfold_core::{Access, Column, Described, Element, Field, Line, RecordTable};
+use sixfold_core::{Access, Column, Described, Element, ElementName, Field, Line, RecordTable};
 
-use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::{Inference, Reason};

@@ -280,6 +280,104 @@ fn new_elements_get_the_next_numbers_and_compaction_keeps_the_names() {
     }
 }
 
+/// The positions of vertices and of the corners of faces, by name.
+type Named = (Vec<Option<[u32; 3]>>, Vec<Option<Vec<[u32; 3]>>>);
+
+/// Returns the elements of the structure after edits, or `None` if it refuses one.
+fn named(structure: &Structure, polygons: &PolygonMesh, edits: &[EditCommand]) -> Option<Named> {
+    let geometry = structure.build_after(polygons, edits).ok()?.geometry();
+    let key = |position: [f32; 3]| position.map(|x| (x + 0.0).to_bits());
+    let vertices: Vec<_> = (geometry.vertices.iter()).map(|v| v.map(key)).collect();
+    let corners = |face: &Vec<u32>| {
+        let corners = face
+            .iter()
+            .map(|&v| vertices[v as usize].expect("a corner"));
+        let mut corners: Vec<_> = corners.collect();
+        let lowest = (0..corners.len()).min_by_key(|&i| corners[i]);
+        corners.rotate_left(lowest.unwrap_or(0));
+        corners
+    };
+    let faces = geometry.faces.iter().map(|f| f.as_ref().map(corners));
+    Some((vertices.clone(), faces.collect()))
+}
+
+/// Checks that all structures that accept the edits have the same elements by name. Returns the
+/// number of these structures.
+fn check_names(polygons: &PolygonMesh, edits: &[EditCommand]) -> usize {
+    let mut first: Option<Named> = None;
+    let mut count = 0;
+    for structure in Structure::all() {
+        let Some(found) = named(&structure, polygons, edits) else {
+            continue;
+        };
+        count += 1;
+        let (vertices, faces) = first.get_or_insert_with(|| found.clone());
+        let context = format!("{} {edits:?}", structure.name());
+        assert_eq!(found.1, *faces, "{context}");
+        assert_eq!(found.0.len(), vertices.len(), "{context}");
+        // A soup does not keep a vertex that loses its last face.
+        let mut pairs = found.0.iter().zip(&*vertices);
+        let are_same = pairs.all(|(v, first)| v == first || v.is_none() || first.is_none());
+        assert!(are_same, "{context}: {:?} {vertices:?}", found.0);
+    }
+    count
+}
+
+#[test]
+fn a_name_means_the_same_element_on_every_structure() {
+    let open = shapes::triangle_grid(2, 1).expect("a small size");
+    let mixed = shapes::mixed_grid(2, 1).expect("a small size");
+    let last = [
+        "remove_face f1",
+        "poke_face f2",
+        "bisect_edge v0-v2",
+        "compact",
+    ];
+    let last = last.map(|edit| edit.parse::<EditCommand>().expect("an edit"));
+    let mut most = 0;
+    for polygons in [shapes::octahedron(), open, mixed] {
+        for first in commands(&polygons) {
+            for last in &last {
+                most = most.max(check_names(&polygons, &[first.clone(), last.clone()]));
+            }
+        }
+    }
+    assert_eq!(most, Structure::all().len());
+}
+
+#[test]
+fn names_are_the_same_on_a_structure_that_merges_vertices() {
+    // v5 is at the position of v0.
+    let at = |x: u8, y: u8| sixfold::Point::new(x.into(), y.into(), 0.0);
+    let positions = vec![at(0, 0), at(1, 2), at(2, 1), at(0, 4), at(4, 0), at(0, 0)];
+    let touching = PolygonMesh::new(positions, [vec![0, 2, 1], vec![5, 3, 4]]);
+    let touching = touching.expect("two triangles");
+    let edits = ["poke_face f1", "poke_face f2", "bisect_edge v3-v6"];
+    let edits = edits.map(|edit| edit.parse().expect("an edit"));
+    for count in 1..=3 {
+        assert_eq!(check_names(&touching, &edits[..count]), 6);
+    }
+}
+
+#[test]
+fn the_parts_of_a_face_have_the_same_names_on_every_structure() {
+    let edits = ["bisect_edge v0-v2".parse().expect("an edit")];
+    for structure in Structure::all() {
+        let name = structure.name();
+        let mesh = edited(&structure, &shapes::octahedron(), &edits);
+        let corners = |f: &str| {
+            let trace = mesh.trace(Relation::FaceVertices, f.parse().expect("a name"));
+            let mut corners = trace.expect("a face").results;
+            corners.sort();
+            corners.join(" ")
+        };
+        // v6 is on the edge of f0 (v0 v2 v4) and f4 (v2 v0 v5).
+        let parts = ["f0", "f4", "f8", "f9"].map(corners);
+        let expected = ["v0 v4 v6", "v0 v5 v6", "v2 v4 v6", "v2 v5 v6"];
+        assert_eq!(parts, expected, "{name}");
+    }
+}
+
 #[test]
 fn a_brief_edit_has_the_counts_of_all_rows() {
     let compact: EditCommand = "compact".parse().expect("an edit");
@@ -344,7 +442,9 @@ fn rows_that_an_edit_moved_have_the_names_of_their_elements() {
     for structure in Structure::all() {
         let name = structure.name();
         let before = edited(&structure, &shapes::octahedron(), &edits[..2]);
-        assert_eq!(before.moved_rows(), Vec::<[String; 2]>::new(), "{name}");
+        let mut moved = before.moved_rows().into_iter();
+        // Structures differ in the part of f1 that keeps its row.
+        assert!(moved.all(|[row, _]| row.starts_with('f')), "{name}");
         let mesh = edited(&structure, &shapes::octahedron(), &edits);
         let moved: HashMap<String, String> =
             mesh.moved_rows().into_iter().map(<[_; 2]>::into).collect();

@@ -3,7 +3,6 @@
 //! A trace names vertices and faces by their numbers in the mesh file, and edges by their two ends.
 //! Before the timing, each structure translates the names to its own handles.
 
-mod names;
 mod replay;
 #[cfg(test)]
 mod tests;
@@ -13,8 +12,7 @@ use sixfold::{Edit, Point, Relation};
 
 use crate::operation::ElementKind;
 
-pub(crate) use names::Names;
-pub(crate) use replay::{EditReplay, MoveReplay, QueryReplay, affected_faces};
+pub(crate) use replay::{EditReplay, MoveReplay, QueryReplay};
 pub use text::TraceError;
 
 /// The calls of one run of a program.

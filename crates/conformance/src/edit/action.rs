@@ -85,6 +85,28 @@ impl Action {
         }
     }
 
+    /// Returns the ends of the edge that the edit takes.
+    pub(crate) fn ends(&self) -> Option<[usize; 2]> {
+        match self {
+            Self::SplitEdge { ends, .. }
+            | Self::BisectEdge { ends, .. }
+            | Self::DissolveEdge { ends }
+            | Self::FlipEdge { ends }
+            | Self::CollapseEdge { ends, .. } => Some(*ends),
+            _ => None,
+        }
+    }
+
+    /// Returns the face that the edit takes.
+    pub(crate) fn face(&self) -> Option<usize> {
+        match self {
+            Self::RemoveFace { f } | Self::PokeFace { f, .. } | Self::SplitFace { f, .. } => {
+                Some(*f)
+            }
+            _ => None,
+        }
+    }
+
     pub(crate) fn position(&self) -> Option<Point> {
         match self {
             Self::SetPosition { to: at, .. }

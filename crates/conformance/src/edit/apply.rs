@@ -9,7 +9,7 @@ use super::action::Action;
 
 /// Applies `action` to a mesh of the structure `name`. `vertices` and `faces` map the elements of
 /// the model to handles. Returns the vertex that the action made or moved.
-pub(super) fn apply_action<M: MeshEdit>(
+pub(crate) fn apply_action<M: MeshEdit>(
     mesh: &mut M,
     name: &str,
     vertices: &BTreeMap<usize, M::Vertex>,

@@ -429,7 +429,7 @@ fn euler_step(action: &Action) -> Option<isize> {
 }
 
 /// Returns the lexicographically least rotation of a face.
-fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
+pub(crate) fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
     let from = |i: usize| corners[i..].iter().chain(&corners[..i]);
     let least = (0..corners.len()).min_by(|&i, &j| from(i).cmp(from(j)));
     corners.rotate_left(least.unwrap_or(0));

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::tape::{Tape, TapeState, TapedRun, Watched};
 use crate::operation::ElementKind;
-use crate::trace::{EditCall, NONE, Trace, affected_faces};
+use crate::trace::{EditCall, NONE, Trace};
 use sixfold::{
     BuildError, Capabilities, Edit, EditLog, EditRecord, FaceId, Handle, InvariantError,
     MemoryFootprint, MeshEdit, MeshMove, MeshQuery, MoveError, OrientedWalk, Point, PolygonMesh,
@@ -127,14 +127,14 @@ macro_rules! counted {
         })+
     };
     (name vertex $mesh:ident, $of:ident) => {
-        |tape: &mut TapeState<M::Vertex, M::Face>| [tape.names.vertex_number($of), 0]
+        |tape: &mut TapeState<M::Vertex, M::Face>| tape.vertex_name($of)
     };
     (name face $mesh:ident, $of:ident) => {
-        |tape: &mut TapeState<M::Vertex, M::Face>| [tape.names.face_number($of), 0]
+        |tape: &mut TapeState<M::Vertex, M::Face>| tape.face_name($of)
     };
     (name edge $mesh:ident, $of:ident) => {
         |tape: &mut TapeState<M::Vertex, M::Face>| {
-            tape.names.edge_name($mesh.mesh.edge_vertices($of))
+            tape.edge_name($mesh.mesh.edge_vertices($of))
         }
     };
     (note vertex $relation:ident) => {
@@ -155,13 +155,13 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
     fn vertices(&self) -> impl Iterator<Item = M::Vertex> {
         let vertices = self.mesh.vertices();
         Watched::list(vertices, self.tape.as_ref(), ElementKind::Vertex)
-            .noting(|tape, &v| tape.item([tape.names.vertex_number(v), 0]))
+            .noting(|tape, &v| tape.item(tape.vertex_name(v)))
     }
 
     fn edges(&self) -> impl Iterator<Item = M::Edge> {
         let edges = self.mesh.edges();
         Watched::list(edges, self.tape.as_ref(), ElementKind::Edge).noting(|tape, &e| {
-            let name = tape.names.edge_name(self.mesh.edge_vertices(e));
+            let name = tape.edge_name(self.mesh.edge_vertices(e));
             tape.item(name);
         })
     }
@@ -169,7 +169,7 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
     fn faces(&self) -> impl Iterator<Item = M::Face> {
         let faces = self.mesh.faces();
         Watched::list(faces, self.tape.as_ref(), ElementKind::Face)
-            .noting(|tape, &f| tape.item([tape.names.face_number(f), 0]))
+            .noting(|tape, &f| tape.item(tape.face_name(f)))
     }
 
     fn vertex_count(&self) -> usize {
@@ -208,7 +208,7 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
         let ends = self.asks(relation).edge_vertices(e);
         if let Some(tape) = &self.tape {
             let mut tape = tape.lock();
-            let name = tape.names.edge_name(ends);
+            let name = tape.edge_name(ends);
             tape.query(relation, name);
             for v in ends {
                 tape.yielded(relation, v);
@@ -370,25 +370,25 @@ impl<M: MeshEdit> Recorded<M> {
         let mut record = EditRecord::new();
         let tape = self.tape.clone();
         let mut call = EditCall::new(kind);
-        let mut affected = Vec::new();
-        if let Some(tape) = &tape {
-            let names = &tape.lock().names;
-            affected = affected_faces(&self.mesh, names, arguments.edge, arguments.face);
+        let cut = tape.as_ref().map(|tape| {
+            let tape = tape.lock();
             if let Some(e) = arguments.edge {
-                call.vertices
-                    .extend(names.edge_name(self.mesh.edge_vertices(e)));
+                let ends = self.mesh.edge_vertices(e);
+                call.vertices.extend(tape.edge_name(ends));
             }
-            let number = |v: &Option<M::Vertex>| v.map_or(NONE, |v| names.vertex_number(v));
+            let number = |v: &Option<M::Vertex>| v.map_or(NONE, |v| tape.vertex_name(v)[0]);
             call.vertices.extend(arguments.vertices.iter().map(number));
-            call.face = arguments.face.map(|f| names.face_number(f));
+            call.face = arguments.face.map(|f| tape.face_name(f)[0]);
             call.at = arguments.at;
-        }
+            let names = &tape.names;
+            names.faces_before(&self.mesh, arguments.edge, arguments.face)
+        });
         let done = edit(self.edits(kind), &mut BothLogs(log, &mut record));
-        if let Some(tape) = &tape {
+        if let (Some(tape), Some(cut)) = (&tape, &cut) {
             let mut tape = tape.lock();
             call.refused = is_refused(&done);
             if !call.refused {
-                tape.names.follow(&self.mesh, &record, &affected);
+                tape.names.follow(&self.mesh, &record, cut);
             }
             tape.edit(call);
         }

@@ -9,8 +9,9 @@ use sixfold::{
     Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation,
     VertexMap,
 };
+use sixfold_core::ElementNames;
 
-use super::{ALL, Argument, Call, EditCall, NONE, Names, Op, Trace, arguments};
+use super::{ALL, Argument, Call, EditCall, NONE, Op, Trace, arguments};
 use crate::job::Outcome;
 use crate::operation::ElementKind;
 use crate::program::Form;
@@ -132,7 +133,7 @@ impl<M: MeshQuery> Replay<M> {
         &mut self,
         nth: usize,
         call: Call,
-        names: &Names<V, F>,
+        names: &ElementNames<V, F>,
         edge: impl FnOnce([u32; 2]) -> Option<M::Edge>,
     ) -> Result<(), String>
     where
@@ -239,7 +240,7 @@ fn translate<M: Representation>(
     let translation = Translation {
         trace,
         mesh,
-        names: &Names::new::<M>(polygons),
+        names: &ElementNames::new::<M>(polygons),
         ends: ends_of_lists(&trace.calls),
     };
     let is_edge = |call: &Call| match call.op {
@@ -249,8 +250,8 @@ fn translate<M: Representation>(
     };
     let names_edges = trace.calls.iter().any(is_edge);
     let edges = mesh.edges().filter(|_| names_edges);
-    let named = |e| (translation.names.edge_name(mesh.edge_vertices(e)), e);
-    let edges: HashMap<[u32; 2], M::Edge> = edges.map(named).collect();
+    let named = |e| Some((translation.names.edge_numbers(mesh.edge_vertices(e))?, e));
+    let edges: HashMap<[u32; 2], M::Edge> = edges.filter_map(named).collect();
     let mut replay = Replay::new();
     translation.add(&mut replay, &edges, 0..trace.calls.len())?;
     if trace.calls.iter().any(|call| call.op == Op::SetPositions) {
@@ -285,7 +286,7 @@ pub(super) fn handles<M: Representation>(
 struct Translation<'t, M: MeshQuery> {
     trace: &'t Trace,
     mesh: &'t M,
-    names: &'t Names<M::Vertex, M::Face>,
+    names: &'t ElementNames<M::Vertex, M::Face>,
     /// For each call that starts a list, the call that ends it.
     ends: HashMap<usize, usize>,
 }
@@ -357,15 +358,15 @@ impl<M: MeshQuery> Translation<'_, M> {
         let names: Box<dyn Iterator<Item = [u32; 2]> + '_> = match kind {
             ElementKind::Vertex => {
                 let names = self.mesh.vertices();
-                Box::new(names.map(|v| [self.names.vertex_number(v), 0]))
+                Box::new(names.filter_map(|v| Some([self.names.vertex_number(v)?, 0])))
             }
             ElementKind::Edge => {
                 let ends = self.mesh.edges().map(|e| self.mesh.edge_vertices(e));
-                Box::new(ends.map(|ends| self.names.edge_name(ends)))
+                Box::new(ends.filter_map(|ends| self.names.edge_numbers(ends)))
             }
             ElementKind::Face => {
                 let names = self.mesh.faces();
-                Box::new(names.map(|f| [self.names.face_number(f), 0]))
+                Box::new(names.filter_map(|f| Some([self.names.face_number(f)?, 0])))
             }
         };
         for name in names {
@@ -421,7 +422,7 @@ fn translate_edits<M: Representation + MeshEdit>(
         return Err("the edits of the trace scan all faces: a run would take too long".into());
     }
     let mut mesh = mesh.clone();
-    let mut names = Names::new::<M>(polygons);
+    let mut names = ElementNames::new::<M>(polygons);
     let mut replay = Replay::new();
     for (nth, &call) in trace.calls.iter().enumerate() {
         match call.op {
@@ -435,7 +436,7 @@ fn translate_edits<M: Representation + MeshEdit>(
             Op::Edit => {
                 let edit = &trace.edits[call.name[0] as usize];
                 let handles = edit_handles(nth, edit, &mesh, &names)?;
-                let affected = affected_faces(&mesh, &names, handles.edge, handles.face);
+                let cut = names.faces_before(&mesh, handles.edge, handles.face);
                 let mut record = EditRecord::new();
                 let refusal = apply(&mut mesh, &handles, &mut record);
                 if refusal.is_some() != edit.refused {
@@ -450,7 +451,7 @@ fn translate_edits<M: Representation + MeshEdit>(
                     ));
                 }
                 if !edit.refused {
-                    names.follow(&mesh, &record, &affected);
+                    names.follow(&mesh, &record, &cut);
                 }
                 replay.edits.push(handles);
                 replay.push(Op::Edit, ALL, replay.edits.len() - 1);
@@ -460,23 +461,11 @@ fn translate_edits<M: Representation + MeshEdit>(
     Ok(replay)
 }
 
-/// Returns the numbers of the faces that an edit at an edge or at a face cuts or merges.
-pub(crate) fn affected_faces<M: MeshQuery>(
-    mesh: &M,
-    names: &Names<M::Vertex, M::Face>,
-    edge: Option<M::Edge>,
-    face: Option<M::Face>,
-) -> Vec<u32> {
-    let at_edge = edge.into_iter().flat_map(|e| mesh.edge_faces(e));
-    let faces = at_edge.chain(face);
-    faces.map(|f| names.face_number(f)).collect()
-}
-
 fn edit_handles<M: MeshEdit>(
     nth: usize,
     call: &EditCall,
     mesh: &M,
-    names: &Names<M::Vertex, M::Face>,
+    names: &ElementNames<M::Vertex, M::Face>,
 ) -> Result<EditHandles<M>, String> {
     let vertex = |&number: &u32| match number {
         NONE => Ok(None),
