@@ -8,11 +8,8 @@ pub type Action = EditCall<usize, [usize; 2], usize>;
 
 /// Returns the position among the arguments of an action.
 pub(super) fn position(action: &Action) -> Option<Point> {
-    let mut position = None;
-    action.for_each_argument(|argument| {
-        if let EditArgument::Position(&at) | EditArgument::NewPosition(&at) = argument {
-            position = Some(at);
-        }
-    });
-    position
+    action.find_argument(|argument| match argument {
+        EditArgument::Position(&at) | EditArgument::NewPosition(&at) => Some(at),
+        _ => None,
+    })
 }

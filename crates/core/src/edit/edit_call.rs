@@ -67,6 +67,10 @@ pub enum EditArgument<'a, V, E, F, P = Point> {
 
 /// A source of arguments for edits, which are asked in the order of the methods of [`MeshEdit`].
 #[expect(missing_docs, reason = "each method returns one argument")]
+#[expect(
+    clippy::missing_errors_doc,
+    reason = "the source has no argument of this kind"
+)]
 pub trait EditArguments {
     type Vertex;
     type Edge;
@@ -297,26 +301,34 @@ macro_rules! edit_calls {
 crate::for_each_edit!(edit_calls! {});
 
 impl<V, E, F, P> EditCall<V, E, F, P> {
-    /// Returns the edge among the arguments.
-    pub fn edge(&self) -> Option<&E> {
-        let mut edge = None;
+    /// Returns the first argument for which `get` returns a value.
+    pub fn find_argument<'a, T>(
+        &'a self,
+        get: impl Fn(EditArgument<'a, V, E, F, P>) -> Option<T>,
+    ) -> Option<T> {
+        let mut found = None;
         self.for_each_argument(|argument| {
-            if let EditArgument::Edge(e) = argument {
-                edge = Some(e);
+            if found.is_none() {
+                found = get(argument);
             }
         });
-        edge
+        found
+    }
+
+    /// Returns the edge among the arguments.
+    pub fn edge(&self) -> Option<&E> {
+        self.find_argument(|argument| match argument {
+            EditArgument::Edge(e) => Some(e),
+            _ => None,
+        })
     }
 
     /// Returns the face among the arguments.
     pub fn face(&self) -> Option<&F> {
-        let mut face = None;
-        self.for_each_argument(|argument| {
-            if let EditArgument::Face(f) = argument {
-                face = Some(f);
-            }
-        });
-        face
+        self.find_argument(|argument| match argument {
+            EditArgument::Face(f) => Some(f),
+            _ => None,
+        })
     }
 
     /// Returns the vertices among the arguments, without the ends of an edge.

@@ -6,8 +6,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use sixfold::{
-    Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation,
-    VertexMap,
+    Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Representation, VertexMap,
 };
 use sixfold_core::{EditOf, ElementNames};
 
@@ -182,17 +181,14 @@ impl<M: MeshQuery> Replay<M> {
         for group in &self.groups {
             let taken = group.taken as usize;
             match group.op {
-                Op::Query(relation) => match relation {
-                    Relation::VertexVertices => query!(vertices, vertex_vertices, group),
-                    Relation::VertexEdges => query!(vertices, vertex_edges, group),
-                    Relation::VertexFaces => query!(vertices, vertex_faces, group),
-                    Relation::EdgeVertices => query!(edges, edge_vertices, group),
-                    Relation::EdgeEdges => query!(edges, edge_edges, group),
-                    Relation::EdgeFaces => query!(edges, edge_faces, group),
-                    Relation::FaceVertices => query!(faces, face_vertices, group),
-                    Relation::FaceEdges => query!(faces, face_edges, group),
-                    Relation::FaceFaces => query!(faces, face_faces, group),
-                },
+                Op::Query(relation) => {
+                    macro_rules! query_group {
+                        ($query:ident $list:ident $from:ident $to:ident) => {
+                            query!($list, $query, group)
+                        };
+                    }
+                    sixfold_core::match_relation!(relation, query_group!);
+                }
                 Op::Position => {
                     for &v in &self.vertices[group.range.clone()] {
                         sum += mesh.position(v);
