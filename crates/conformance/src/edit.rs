@@ -14,7 +14,7 @@ mod relations;
 mod script;
 
 pub use action::Action;
-pub(crate) use apply::apply_action;
+pub(crate) use apply::{apply_action, translated};
 pub(crate) use model::sides;
 pub use model::{Model, Rules};
 pub use model_test::ModelTest;

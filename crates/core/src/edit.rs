@@ -1,5 +1,7 @@
 //! Edits in place, their reports, and data that follows them.
 
+pub(crate) mod edit_at_triangle;
+pub(crate) mod edit_call;
 pub(crate) mod edit_check;
 pub(crate) mod edit_error;
 pub(crate) mod edit_kind;

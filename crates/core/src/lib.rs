@@ -23,6 +23,7 @@
 //!   tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and the reason why an edit is refused.
+//! - [`EditCall`]: an edit with its arguments as a value, by handles or as text.
 //! - [`ElementName`] and [`ElementNames`]: names such as `v3` and `f2`, which mean the same elements
 //!   on every structure, also after edits.
 //! - [`MeshWithData`]: a mesh together with values for its vertices, edges or faces; each edit of
@@ -74,6 +75,9 @@ mod tables;
 mod traits;
 
 // For programs.
+pub use edit::edit_call::{
+    EditArgument, EditArguments, EditByName, EditCall, EditOf, EditResult, EditTextError,
+};
 pub use edit::edit_error::EditError;
 pub use edit::edit_kind::Edit;
 pub use edit::edit_log::{Changes, EditLog, EditRecord, OldToNew};
@@ -151,6 +155,8 @@ pub use traits::refine::{
 };
 
 // For measurements.
+#[doc(hidden)]
+pub use edit::edit_at_triangle::edit_at_triangle;
 pub use tables::probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use traits::measured::Measured;
 

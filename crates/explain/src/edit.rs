@@ -2,12 +2,12 @@
 
 use rustc_hash::FxHashSet;
 use serde::Serialize;
-use sixfold::{Edit, EditRecord, Handle, MeshEdit, Point, Refusal};
+use sixfold::{EditRecord, Handle, MeshEdit};
 use sixfold_core::{
-    Access, AccessKind, Described, ElementName, FacesBefore, Field, NameChanges, RecordTable,
+    Access, AccessKind, Described, EditByName, EditOf, ElementName, FacesBefore, Field,
+    NameChanges, RecordTable,
 };
 
-use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::trace::stored_fields;
@@ -104,24 +104,12 @@ impl RowChange {
 
 impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     /// Runs an edit. Returns the rule that it breaks, if the structure refuses it.
-    pub(crate) fn run(&mut self, command: &EditCommand) -> Result<Option<String>, ExplainError> {
-        let mut record = EditRecord::new();
-        let cut = self.faces_before(command);
-        let refusal = self.run_recorded(command, &mut record)?;
+    pub(crate) fn run(&mut self, command: &EditByName) -> Result<Option<String>, ExplainError> {
+        let edit = self.found(command)?;
+        let (refusal, record, cut) = self.run_recorded(&edit);
         self.follow(&record, &cut);
         self.probe.take();
         Ok(refusal)
-    }
-
-    /// Returns the faces at the edge or the face that an edit takes.
-    fn faces_before(&self, command: &EditCommand) -> FacesBefore {
-        let mut elements = command.elements.iter().flatten();
-        let (edge, face) = match elements.next() {
-            Some(&name @ ElementName::Edge(_)) => (self.edge(name).ok(), None),
-            Some(&name) => (None, self.face(name).ok()),
-            None => (None, None),
-        };
-        self.names.faces_before(&self.mesh, edge, face)
     }
 
     fn follow(
@@ -138,13 +126,12 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     /// because all rows are compared.
     pub(crate) fn run_shown(
         &mut self,
-        command: &EditCommand,
+        command: &EditByName,
         most: usize,
     ) -> Result<EditTrace, ExplainError> {
+        let edit = self.found(command)?;
         let (before, elements) = (self.mesh.clone(), self.elements());
-        let mut record = EditRecord::new();
-        let cut = self.faces_before(command);
-        let refusal = self.run_recorded(command, &mut record)?;
+        let (refusal, record, cut) = self.run_recorded(&edit);
         let accesses = self.probe.take();
         let mut changes = Changed::new(most);
         self.probe
@@ -188,119 +175,21 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         }
     }
 
-    /// Returns the mean of positions.
-    fn middle(&self, vertices: impl IntoIterator<Item = P::Vertex>) -> Point {
-        let mut count = 0.0;
-        let positions = vertices.into_iter().map(|v| self.mesh.position(v));
-        let sum: Point = positions.inspect(|_| count += 1.0).sum();
-        sum / count
+    /// Returns the edit with the handles of its elements.
+    fn found(&self, command: &EditByName) -> Result<EditOf<P>, ExplainError> {
+        let edit = command.find(&self.mesh, &self.names);
+        edit.map_err(|name| self.missing(name))
     }
 
     /// Runs an edit, whose reads and writes the probe then has. Returns the rule that it breaks, if the
-    /// structure refuses it.
-    fn run_recorded(
-        &mut self,
-        command: &EditCommand,
-        record: &mut EditRecord<P>,
-    ) -> Result<Option<String>, ExplainError> {
-        command.check()?;
-        let names = &command.elements;
-        let name = |i: usize| {
-            names
-                .get(i)
-                .copied()
-                .flatten()
-                .expect("the command was checked")
-        };
-        let optional = |i: usize| match names.get(i).copied().flatten() {
-            Some(name) => self.vertex(name).map(Some),
-            None => Ok(None),
-        };
-        let given = command.at;
-        let on_edge = |e| given.unwrap_or_else(|| self.middle(self.mesh.edge_vertices(e)));
-        let refused = match command.edit {
-            Edit::SetPosition => {
-                let v = self.vertex(name(0))?;
-                let at = given.unwrap_or(Point::ZERO);
-                self.clean().set_position_logged(v, at, record).map(drop)
-            }
-            Edit::AddVertex => {
-                let at = given.unwrap_or(Point::ZERO);
-                self.clean().add_vertex_logged(at, record).map(drop)
-            }
-            Edit::AddFace => {
-                let corners = (0..names.len()).map(|i| self.vertex(name(i)));
-                let corners: Vec<P::Vertex> = corners.collect::<Result<_, _>>()?;
-                self.clean().add_face_logged(&corners, record).map(drop)
-            }
-            Edit::RemoveFace => {
-                let f = self.face(name(0))?;
-                self.clean().remove_face_logged(f, record)
-            }
-            Edit::RemoveVertex => {
-                let v = self.vertex(name(0))?;
-                self.clean().remove_vertex_logged(v, record)
-            }
-            Edit::RemoveIsolatedVertices => {
-                self.clean().remove_isolated_vertices_logged(record);
-                Ok(())
-            }
-            Edit::SplitEdge => {
-                let e = self.edge(name(0))?;
-                let at = on_edge(e);
-                self.clean().split_edge_logged(e, at, record).map(drop)
-            }
-            Edit::BisectEdge => {
-                let e = self.edge(name(0))?;
-                let at = on_edge(e);
-                self.clean().bisect_edge_logged(e, at, record).map(drop)
-            }
-            Edit::PokeFace => {
-                let f = self.face(name(0))?;
-                let at = given.unwrap_or_else(|| self.middle(self.mesh.face_vertices(f)));
-                self.clean().poke_face_logged(f, at, record).map(drop)
-            }
-            Edit::SplitFace => {
-                let f = self.face(name(0))?;
-                let ends = [self.vertex(name(1))?, self.vertex(name(2))?];
-                self.clean().split_face_logged(f, ends, record).map(drop)
-            }
-            Edit::DissolveEdge => {
-                let e = self.edge(name(0))?;
-                self.clean().dissolve_edge_logged(e, record).map(drop)
-            }
-            Edit::FlipEdge => {
-                let e = self.edge(name(0))?;
-                self.clean().flip_edge_logged(e, record).map(drop)
-            }
-            Edit::CollapseEdge => {
-                let (e, keep) = (self.edge(name(0))?, self.vertex(name(1))?);
-                let at = on_edge(e);
-                self.clean()
-                    .collapse_edge_logged(e, keep, at, record)
-                    .map(drop)
-            }
-            Edit::SplitVertex => {
-                let v = self.vertex(name(0))?;
-                let (left, right) = (optional(1)?, optional(2)?);
-                let middle = || self.middle([Some(v), left, right].into_iter().flatten());
-                let at = given.unwrap_or_else(middle);
-                self.clean()
-                    .split_vertex_logged(v, left, right, at, record)
-                    .map(drop)
-            }
-            Edit::Compact => {
-                self.clean().compact_logged(record);
-                Ok(())
-            }
-        };
-        Ok(refused.err().map(|refusal: Refusal<P>| refusal.to_string()))
-    }
-
-    /// Returns the mesh, after the reads that looked up the arguments are forgotten.
-    fn clean(&mut self) -> &mut P {
+    /// structure refuses it, the changes, and the faces before.
+    fn run_recorded(&mut self, edit: &EditOf<P>) -> (Option<String>, EditRecord<P>, FacesBefore) {
+        let cut = self.names.faces_before(&self.mesh, edit);
+        let mut record = EditRecord::new();
+        // The reads that looked up the arguments are forgotten.
         self.probe.take();
-        &mut self.mesh
+        let refusal = edit.apply(&mut self.mesh, &mut record).err();
+        (refusal.map(|refusal| refusal.to_string()), record, cut)
     }
 }
 

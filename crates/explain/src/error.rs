@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sixfold::{BuildError, Relation, UnknownName};
-use sixfold_core::{ElementName, NoElementName};
+use sixfold_core::{EditTextError, ElementName, NoElementName};
 
 /// A structure that shows nothing, among others that do.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -42,8 +42,8 @@ pub enum ExplainError {
         reason: String,
     },
     /// A text that is not an edit.
-    #[error("{reason}")]
-    BadEdit { reason: String },
+    #[error(transparent)]
+    BadEdit(#[from] EditTextError),
     /// The structure was given without its editable form.
     #[error("{structure} has no edits")]
     NoEdits { structure: &'static str },

@@ -69,7 +69,7 @@ where
 }
 
 impl<P: Described> NamedMesh<P> {
-    fn missing(&self, name: ElementName) -> ExplainError {
+    pub(crate) fn missing(&self, name: ElementName) -> ExplainError {
         ExplainError::NoSuchElement {
             structure: self.structure,
             name,

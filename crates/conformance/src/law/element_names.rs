@@ -9,7 +9,9 @@ use sixfold_core::{
 };
 
 use super::scripts::{Executed, on_random_scripts};
-use crate::edit::{Action, Model, Rules, Step, apply_action, canonical_rotation, sides};
+use crate::edit::{
+    Action, Model, Rules, Step, apply_action, canonical_rotation, sides, translated,
+};
 use crate::subject::stored_mesh;
 use crate::weld::{position_key, weld_numbers};
 
@@ -74,12 +76,9 @@ fn run_script<M: Representation + MeshEdit + Debug>(
             Some((f, names.face(number)?))
         });
         let faces: BTreeMap<usize, M::Face> = faces.collect();
-        let (ends, face) = (action.ends(), action.face());
-        let edge = ends.and_then(|ends| {
-            let [a, b] = ends.map(|v| vertices[&v]);
-            mesh.edge_between(a, b)
-        });
-        let before = names.faces_before(&mesh, edge, face.map(|f| faces[&f]));
+        let (ends, face) = (action.edge().copied(), action.face().copied());
+        let call = translated(&mesh, M::NAME, &vertices, &faces, &action);
+        let before = names.faces_before(&mesh, &call);
         let has_ends = |face: &[usize]| ends.is_some_and(|ends| is_side(face, ends));
         let cut = model
             .faces()

@@ -5,6 +5,7 @@ use std::collections::hash_map::Entry;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
+use crate::edit::edit_call::EditOf;
 use crate::edit::edit_log::{Changes, EditRecord};
 use crate::edit::element_name::ElementName;
 use crate::handles::handle::Handle;
@@ -35,15 +36,19 @@ use crate::traits::representation::Representation;
 /// of the mesh file, also if it does not merge vertices.
 ///
 /// ```
-/// # use sixfold_core::{EditRecord, ElementNames, MeshEdit, Refusal, VertexId, Handle};
-/// # fn example<M: MeshEdit>(mesh: &mut M, names: &mut ElementNames<M::Vertex, M::Face>, f: M::Face) -> Result<(), Refusal<M>> {
-/// let before = names.faces_before(mesh, None, Some(f));
-/// let mut record = EditRecord::new();
-/// let v = mesh.poke_face_logged(f, sixfold_core::Point::ZERO, &mut record)?;
-/// let changes = names.follow(mesh, &record, &before);
-/// assert_eq!(changes.created.first().copied(), names.vertex_number(v).map(sixfold_core::ElementName::Vertex));
-/// # Ok(())
-/// # }
+/// use sixfold_core::{EditOf, EditRecord, ElementName, ElementNames, MeshEdit, Refusal};
+///
+/// /// Runs an edit, and returns the names of the new elements.
+/// fn edit<M: MeshEdit>(
+///     mesh: &mut M,
+///     names: &mut ElementNames<M::Vertex, M::Face>,
+///     edit: &EditOf<M>,
+/// ) -> Result<Vec<ElementName>, Refusal<M>> {
+///     let before = names.faces_before(mesh, edit);
+///     let mut record = EditRecord::new();
+///     edit.apply(mesh, &mut record)?;
+///     Ok(names.follow(mesh, &record, &before).created)
+/// }
 /// ```
 #[derive(Clone, Debug)]
 pub struct ElementNames<V, F> {
@@ -120,19 +125,15 @@ impl<V: Handle, F: Handle> ElementNames<V, F> {
         Some([a.min(b), a.max(b)])
     }
 
-    /// Returns the faces that an edit at an edge or at a face may cut or merge. Call this before the
-    /// edit.
-    pub fn faces_before<M>(
-        &self,
-        mesh: &M,
-        edge: Option<M::Edge>,
-        face: Option<M::Face>,
-    ) -> FacesBefore
+    /// Returns the faces that `edit` may cut or merge: those at its edge, or its face. Call this
+    /// before the edit.
+    pub fn faces_before<M>(&self, mesh: &M, edit: &EditOf<M>) -> FacesBefore
     where
         M: MeshQuery<Vertex = V, Face = F>,
     {
-        let at_edge = edge.into_iter().flat_map(|e| mesh.edge_faces(e));
-        self.faces_before_by(at_edge.chain(face), |f| mesh.face_vertices(f).collect())
+        let at_edge = edit.edge().into_iter().flat_map(|&e| mesh.edge_faces(e));
+        let faces = at_edge.chain(edit.face().copied());
+        self.faces_before_by(faces, |f| mesh.face_vertices(f).collect())
     }
 
     /// Does the same as [`faces_before`](Self::faces_before). `corners` returns the corners of a
@@ -144,15 +145,17 @@ impl<V: Handle, F: Handle> ElementNames<V, F> {
         corners: impl Fn(F) -> Vec<V>,
     ) -> FacesBefore {
         let faces = faces.filter_map(|f| {
+            // A refused edit may name a face that does not exist.
+            let number = self.face_number(f)?;
             let corners = corners(f).into_iter().filter_map(|v| self.place(v));
-            Some((self.face_number(f)?, sorted(corners)))
+            Some((number, sorted(corners)))
         });
         FacesBefore(faces.collect())
     }
 
     /// Follows one accepted edit: `mesh` is the mesh after the edit, `record` has its changes, and
-    /// `before` has the faces at the edge or the face that the edit was given. Returns the names
-    /// that changed.
+    /// `before` is the result of [`faces_before`](Self::faces_before). Returns the names that
+    /// changed.
     pub fn follow<M>(
         &mut self,
         mesh: &M,

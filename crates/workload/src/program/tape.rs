@@ -7,7 +7,7 @@ use sixfold::{Handle, PolygonMesh, Relation, Representation};
 use sixfold_core::ElementNames;
 
 use crate::operation::ElementKind;
-use crate::trace::{ALL, Call, EditCall, NONE, Op, Trace};
+use crate::trace::{ALL, Call, NONE, Op, Trace, TracedEdit};
 
 /// The greatest number of calls that are kept: 256 MB.
 const MAX_CALLS: usize = 1 << 24;
@@ -21,7 +21,7 @@ pub(super) struct Tape<V: Handle, F: Handle>(Arc<Mutex<TapeState<V, F>>>);
 pub(super) struct TapeState<V: Handle, F: Handle> {
     pub(super) names: ElementNames<V, F>,
     calls: Vec<Call>,
-    edits: Vec<EditCall>,
+    edits: Vec<TracedEdit>,
     /// False after more calls than are kept.
     complete: bool,
     /// The relation that was queried last, if its results are vertices, with its last results.
@@ -160,9 +160,9 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
         self.push(Op::SetPositions, [0; 2]);
     }
 
-    pub(super) fn edit(&mut self, call: EditCall) {
+    pub(super) fn edit(&mut self, edit: TracedEdit) {
         self.push(Op::Edit, [self.edits.len() as u32, 0]);
-        self.edits.push(call);
+        self.edits.push(edit);
     }
 }
 
