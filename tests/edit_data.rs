@@ -1,5 +1,5 @@
-//! Checks that meshes with data give the same result on every structure, and that the law for data
-//! after edits detects faults.
+//! Checks that meshes with data give the same result on every structure, and that the laws for data
+//! and names after edits detect faults.
 
 use std::marker::PhantomData;
 use std::panic::catch_unwind;
@@ -11,7 +11,8 @@ use sixfold::{
     LocalQueries, MeshEdit, MeshMove, MeshQuery, MeshWithData, OrientedWalk, Point, PolygonMesh,
     Representation, VertexData, VertexMap, for_each_editable,
 };
-use sixfold_conformance::law::{ElementNumbers, numbers_follow_edits};
+use sixfold_conformance::law::{ElementNumbers, names_follow_edits_by, numbers_follow_edits};
+use sixfold_core::FacesBefore;
 
 use crate::remeshing::{Delaunay, Operator, surfaces};
 
@@ -264,6 +265,20 @@ fn missing_renames_are_detected() {
     assert_detected::<EditablePolygonSoup, NotRenamed>("number of ");
     assert_detected::<EditableIndexedFaceSet, NotRenamed>("number of ");
     assert_detected::<EditableHalfEdgeMesh, NotRenamed>("number of ");
+}
+
+#[test]
+fn names_that_follow_the_handles_of_cut_faces_are_detected() {
+    let follow_handles = || {
+        names_follow_edits_by::<EditableHalfEdgeMesh>(|names, mesh, record, _| {
+            names.follow(mesh, record, &FacesBefore::default());
+        });
+    };
+    let payload = catch_unwind(follow_handles).expect_err("the law passes with the fault");
+    let message = payload.downcast_ref::<String>().expect("a message");
+    let words = "half-edge gives names to other elements than the model";
+    assert!(message.contains(words), "{message}");
+    assert!(message.contains("positions of f"), "{message}");
 }
 
 #[test]

@@ -366,7 +366,7 @@ def check_walks(page, path):
     page.open(path)
     page.click("[data-tab=walk]")
     page.click("#run-walk")
-    check("The results are those of vertex_vertices" in page.text("#walk-result"), page.text("#walk-result"))
+    check("Right: the walk yields vertex_vertices" in page.text("#walk-result"), page.text("#walk-result"))
     page.browser.run("document.getElementById('walk-text').value = 'h = leaving(v0)\\nyield frobnicate(h)'")
     page.click("#run-walk")
     check("frobnicate" in page.text("#walk-result"), page.text("#walk-result"))
@@ -377,10 +377,10 @@ def check_walks(page, path):
     for name in ("winged-edge", "corner-table", "half-edge"):
         page.click(f".card[data-structure={name}] h3 button")
         check("v3" in page.browser.run("return document.getElementById('walk-text').value"), name)
-        check("The results are those of vertex_vertices" in page.text("#walk-result"), name, page.text("#walk-result"))
+        check("Right: the walk yields vertex_vertices" in page.text("#walk-result"), name, page.text("#walk-result"))
     for name in STRUCTURES[:3]:
         page.click(f".card[data-structure={name}] h3 button")
-        check("Missing:" in page.text("#walk-result"), name, page.text("#walk-result"))
+        check("does not yield" in page.text("#walk-result"), name, page.text("#walk-result"))
 
 
 def check_measurements(page, path):

@@ -14,6 +14,9 @@ mod relations;
 mod script;
 
 pub use action::Action;
+pub(crate) use apply::{apply_action, translated};
+pub(crate) use model::sides;
 pub use model::{Model, Rules};
 pub use model_test::ModelTest;
+pub(crate) use model_test::canonical_rotation;
 pub use script::{Step, script};

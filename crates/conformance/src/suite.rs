@@ -87,6 +87,11 @@ macro_rules! edit_suite {
         }
 
         #[test]
+        fn names_follow_edits() {
+            $crate::law::names_follow_edits::<$mesh>();
+        }
+
+        #[test]
         fn edit_costs() {
             $crate::law::edit_costs::<$mesh>();
         }

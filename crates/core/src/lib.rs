@@ -23,6 +23,9 @@
 //!   tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and the reason why an edit is refused.
+//! - [`EditCall`]: an edit with its arguments as a value, by handles or as text.
+//! - [`ElementName`] and [`ElementNames`]: names such as `v3` and `f2`, which mean the same elements
+//!   on every structure, also after edits.
 //! - [`MeshWithData`]: a mesh together with values for its vertices, edges or faces; each edit of
 //!   the mesh also updates the values.
 //! - [`Creases`]: the edges and vertices that stay sharp under subdivision, and for how many
@@ -72,12 +75,17 @@ mod tables;
 mod traits;
 
 // For programs.
+pub use edit::edit_call::{
+    EditArgument, EditArguments, EditByName, EditCall, EditOf, EditResult, EditTextError,
+};
 pub use edit::edit_error::EditError;
 pub use edit::edit_kind::Edit;
 pub use edit::edit_log::{Changes, EditLog, EditRecord, OldToNew};
 pub use edit::element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
 #[doc(hidden)]
 pub use edit::element_data::{Edges, ElementKind, Faces, Vertices};
+pub use edit::element_name::{ElementName, NoElementName};
+pub use edit::element_names::{ElementNames, FacesBefore, NameChanges};
 pub use edit::follow_edits::{AcceptedEdit, FollowEdits};
 pub use edit::mesh_edit::{MeshEdit, Refusal};
 pub use edit::mesh_with_data::MeshWithData;
@@ -147,6 +155,8 @@ pub use traits::refine::{
 };
 
 // For measurements.
+#[doc(hidden)]
+pub use edit::edit_at_triangle::edit_at_triangle;
 pub use tables::probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use traits::measured::Measured;
 

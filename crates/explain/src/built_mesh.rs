@@ -6,11 +6,9 @@ use std::ops::Range;
 
 use serde::Serialize;
 use sixfold::{MeshEdit, PolygonMesh, Relation};
-use sixfold_core::{Described, VertexId};
+use sixfold_core::{Described, EditByName, ElementName, VertexId};
 
 use crate::edit::EditTrace;
-use crate::edit_command::EditCommand;
-use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
 use crate::records::{Records, RowsOf, records, row_name};
@@ -124,7 +122,7 @@ impl BuiltMesh {
     /// Returns [`ExplainError::NoSuchElement`] if the edit names an element that does not exist,
     /// [`ExplainError::BadEdit`] if it lacks one, and [`ExplainError::NoEdits`] if the structure was not
     /// given with its edits ([`Structure::with_edits`](crate::Structure::with_edits)).
-    pub fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
+    pub fn edit(&mut self, edit: &EditByName) -> Result<EditTrace, ExplainError> {
         self.edited()?.edit(edit, usize::MAX)
     }
 
@@ -135,7 +133,7 @@ impl BuiltMesh {
     /// The errors of [`edit`](Self::edit).
     pub fn edit_briefly(
         &mut self,
-        edit: &EditCommand,
+        edit: &EditByName,
         most: usize,
     ) -> Result<EditTrace, ExplainError> {
         self.edited()?.edit(edit, most)
@@ -147,12 +145,12 @@ impl BuiltMesh {
     /// # Errors
     ///
     /// The errors of [`edit`](Self::edit).
-    pub fn apply(&mut self, edit: &EditCommand) -> Result<Option<String>, ExplainError> {
+    pub fn apply(&mut self, edit: &EditByName) -> Result<Option<String>, ExplainError> {
         self.edited()?.apply(edit)
     }
 
     /// Runs one edit, like [`apply`](Self::apply). A refused edit is an error.
-    pub(crate) fn apply_accepted(&mut self, edit: &EditCommand) -> Result<(), ExplainError> {
+    pub(crate) fn apply_accepted(&mut self, edit: &EditByName) -> Result<(), ExplainError> {
         let reason = match self.apply(edit) {
             Ok(None) => return Ok(()),
             Ok(Some(refusal)) => refusal,
@@ -210,8 +208,8 @@ trait Shown {
 
 /// The edits of a mesh of any editable type.
 trait Edited: Shown {
-    fn edit(&mut self, edit: &EditCommand, most: usize) -> Result<EditTrace, ExplainError>;
-    fn apply(&mut self, edit: &EditCommand) -> Result<Option<String>, ExplainError>;
+    fn edit(&mut self, edit: &EditByName, most: usize) -> Result<EditTrace, ExplainError>;
+    fn apply(&mut self, edit: &EditByName) -> Result<Option<String>, ExplainError>;
 }
 
 impl<P: Described> Shown for NamedMesh<P> {
@@ -243,9 +241,9 @@ impl<P: Described> Shown for NamedMesh<P> {
         let position = |v| self.mesh.position(v).to_array();
         let corners = |f| {
             let corners = self.mesh.face_vertices(f);
-            corners.map(|v| self.vertices.number(v)).collect()
+            corners.map(|v| self.vertex_number(v)).collect()
         };
-        let (vertices, faces) = (self.vertices.handles(), self.faces.handles());
+        let (vertices, faces) = (self.names.vertices(), self.names.faces());
         let geometry = Geometry {
             vertices: vertices.iter().map(|v| v.map(position)).collect(),
             faces: faces.iter().map(|f| f.map(corners)).collect(),
@@ -256,11 +254,11 @@ impl<P: Described> Shown for NamedMesh<P> {
 }
 
 impl<P: MeshEdit + Described + Clone> Edited for NamedMesh<P> {
-    fn edit(&mut self, edit: &EditCommand, most: usize) -> Result<EditTrace, ExplainError> {
+    fn edit(&mut self, edit: &EditByName, most: usize) -> Result<EditTrace, ExplainError> {
         self.run_shown(edit, most)
     }
 
-    fn apply(&mut self, edit: &EditCommand) -> Result<Option<String>, ExplainError> {
+    fn apply(&mut self, edit: &EditByName) -> Result<Option<String>, ExplainError> {
         self.run(edit)
     }
 }

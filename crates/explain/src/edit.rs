@@ -2,10 +2,12 @@
 
 use rustc_hash::FxHashSet;
 use serde::Serialize;
-use sixfold::{Edit, EditRecord, MeshEdit, Point, Refusal};
-use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
+use sixfold::{EditRecord, Handle, MeshEdit};
+use sixfold_core::{
+    Access, AccessKind, Described, EditByName, EditOf, ElementName, FacesBefore, Field,
+    NameChanges, RecordTable,
+};
 
-use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::trace::stored_fields;
@@ -34,9 +36,9 @@ pub struct EditTrace {
     pub rows: Vec<RowChange>,
     /// The rows that the edit only reads, by table and row.
     pub only_read: Vec<ReadRows>,
-    /// The names of elements that the edit made.
+    /// The names of new elements.
     pub created: Vec<String>,
-    /// The names of elements that the edit deleted.
+    /// The names that no longer name an element.
     pub removed: Vec<String>,
     /// The elements whose rows have other numbers after the edit: the name of the element, and the rows
     /// before and after.
@@ -102,25 +104,34 @@ impl RowChange {
 
 impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     /// Runs an edit. Returns the rule that it breaks, if the structure refuses it.
-    pub(crate) fn run(&mut self, command: &EditCommand) -> Result<Option<String>, ExplainError> {
-        let mut record = EditRecord::new();
-        let refusal = self.run_recorded(command, &mut record)?;
+    pub(crate) fn run(&mut self, command: &EditByName) -> Result<Option<String>, ExplainError> {
+        let edit = self.found(command)?;
+        let (refusal, record, cut) = self.run_recorded(&edit);
+        self.follow(&record, &cut);
         self.probe.take();
-        self.vertices.follow('v', &record.vertices);
-        self.faces.follow('f', &record.faces);
         Ok(refusal)
+    }
+
+    fn follow(
+        &mut self,
+        record: &EditRecord<P>,
+        cut: &FacesBefore,
+    ) -> NameChanges<P::Vertex, P::Face> {
+        let changes = self.names.follow(&self.mesh, record, cut);
+        self.has_moved |= !changes.moved_vertices.is_empty() || !changes.moved_faces.is_empty();
+        changes
     }
 
     /// Runs an edit, and returns what it does, with at most `most` entries in each list. O(size of the mesh),
     /// because all rows are compared.
     pub(crate) fn run_shown(
         &mut self,
-        command: &EditCommand,
+        command: &EditByName,
         most: usize,
     ) -> Result<EditTrace, ExplainError> {
+        let edit = self.found(command)?;
         let (before, elements) = (self.mesh.clone(), self.elements());
-        let mut record = EditRecord::new();
-        let refusal = self.run_recorded(command, &mut record)?;
+        let (refusal, record, cut) = self.run_recorded(&edit);
         let accesses = self.probe.take();
         let mut changes = Changed::new(most);
         self.probe
@@ -129,8 +140,16 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         self.probe.take();
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();
         let (reads, writes) = (count(AccessKind::Read), count(AccessKind::Write));
-        let vertices = self.vertices.follow('v', &record.vertices);
-        let faces = self.faces.follow('f', &record.faces);
+        let names = self.follow(&record, &cut);
+        self.probe.take();
+        let shown = |names: Vec<ElementName>| {
+            let names = names.iter().take(most);
+            names.map(ElementName::to_string).collect()
+        };
+        let moved_vertices = names.moved_vertices.iter();
+        let moved_vertices = moved_vertices.map(|&(v, rows)| moved(ElementName::Vertex(v), rows));
+        let moved_faces = names.moved_faces.iter();
+        let moved_faces = moved_faces.map(|&(f, rows)| moved(ElementName::Face(f), rows));
         Ok(EditTrace {
             structure: self.structure,
             edit: command.to_string(),
@@ -142,9 +161,9 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
             changed: changes.changed,
             rows: changes.rows,
             only_read: changes.only_read,
-            created: first(most, vertices.created, faces.created),
-            removed: first(most, vertices.removed, faces.removed),
-            renamed: first(most, vertices.renamed, faces.renamed),
+            created: shown(names.created),
+            removed: shown(names.removed),
+            renamed: moved_vertices.chain(moved_faces).take(most).collect(),
         })
     }
 
@@ -156,125 +175,28 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         }
     }
 
-    /// Returns the mean of positions.
-    fn middle(&self, vertices: impl IntoIterator<Item = P::Vertex>) -> Point {
-        let mut count = 0.0;
-        let positions = vertices.into_iter().map(|v| self.mesh.position(v));
-        let sum: Point = positions.inspect(|_| count += 1.0).sum();
-        sum / count
+    /// Returns the edit with the handles of its elements.
+    fn found(&self, command: &EditByName) -> Result<EditOf<P>, ExplainError> {
+        let edit = command.find(&self.mesh, &self.names);
+        edit.map_err(|name| self.missing(name))
     }
 
     /// Runs an edit, whose reads and writes the probe then has. Returns the rule that it breaks, if the
-    /// structure refuses it.
-    fn run_recorded(
-        &mut self,
-        command: &EditCommand,
-        record: &mut EditRecord<P>,
-    ) -> Result<Option<String>, ExplainError> {
-        command.check()?;
-        let names = &command.elements;
-        let name = |i: usize| {
-            names
-                .get(i)
-                .copied()
-                .flatten()
-                .expect("the command was checked")
-        };
-        let optional = |i: usize| match names.get(i).copied().flatten() {
-            Some(name) => self.vertex(name).map(Some),
-            None => Ok(None),
-        };
-        let given = command.at;
-        let on_edge = |e| given.unwrap_or_else(|| self.middle(self.mesh.edge_vertices(e)));
-        let refused = match command.edit {
-            Edit::SetPosition => {
-                let v = self.vertex(name(0))?;
-                let at = given.unwrap_or(Point::ZERO);
-                self.clean().set_position_logged(v, at, record).map(drop)
-            }
-            Edit::AddVertex => {
-                let at = given.unwrap_or(Point::ZERO);
-                self.clean().add_vertex_logged(at, record).map(drop)
-            }
-            Edit::AddFace => {
-                let corners = (0..names.len()).map(|i| self.vertex(name(i)));
-                let corners: Vec<P::Vertex> = corners.collect::<Result<_, _>>()?;
-                self.clean().add_face_logged(&corners, record).map(drop)
-            }
-            Edit::RemoveFace => {
-                let f = self.face(name(0))?;
-                self.clean().remove_face_logged(f, record)
-            }
-            Edit::RemoveVertex => {
-                let v = self.vertex(name(0))?;
-                self.clean().remove_vertex_logged(v, record)
-            }
-            Edit::RemoveIsolatedVertices => {
-                self.clean().remove_isolated_vertices_logged(record);
-                Ok(())
-            }
-            Edit::SplitEdge => {
-                let e = self.edge(name(0))?;
-                let at = on_edge(e);
-                self.clean().split_edge_logged(e, at, record).map(drop)
-            }
-            Edit::BisectEdge => {
-                let e = self.edge(name(0))?;
-                let at = on_edge(e);
-                self.clean().bisect_edge_logged(e, at, record).map(drop)
-            }
-            Edit::PokeFace => {
-                let f = self.face(name(0))?;
-                let at = given.unwrap_or_else(|| self.middle(self.mesh.face_vertices(f)));
-                self.clean().poke_face_logged(f, at, record).map(drop)
-            }
-            Edit::SplitFace => {
-                let f = self.face(name(0))?;
-                let ends = [self.vertex(name(1))?, self.vertex(name(2))?];
-                self.clean().split_face_logged(f, ends, record).map(drop)
-            }
-            Edit::DissolveEdge => {
-                let e = self.edge(name(0))?;
-                self.clean().dissolve_edge_logged(e, record).map(drop)
-            }
-            Edit::FlipEdge => {
-                let e = self.edge(name(0))?;
-                self.clean().flip_edge_logged(e, record).map(drop)
-            }
-            Edit::CollapseEdge => {
-                let (e, keep) = (self.edge(name(0))?, self.vertex(name(1))?);
-                let at = on_edge(e);
-                self.clean()
-                    .collapse_edge_logged(e, keep, at, record)
-                    .map(drop)
-            }
-            Edit::SplitVertex => {
-                let v = self.vertex(name(0))?;
-                let (left, right) = (optional(1)?, optional(2)?);
-                let middle = || self.middle([Some(v), left, right].into_iter().flatten());
-                let at = given.unwrap_or_else(middle);
-                self.clean()
-                    .split_vertex_logged(v, left, right, at, record)
-                    .map(drop)
-            }
-            Edit::Compact => {
-                self.clean().compact_logged(record);
-                Ok(())
-            }
-        };
-        Ok(refused.err().map(|refusal: Refusal<P>| refusal.to_string()))
-    }
-
-    /// Returns the mesh, after the reads that looked up the arguments are forgotten.
-    fn clean(&mut self) -> &mut P {
+    /// structure refuses it, the changes, and the faces before.
+    fn run_recorded(&mut self, edit: &EditOf<P>) -> (Option<String>, EditRecord<P>, FacesBefore) {
+        let cut = self.names.faces_before(&self.mesh, edit);
+        let mut record = EditRecord::new();
+        // The reads that looked up the arguments are forgotten.
         self.probe.take();
-        &mut self.mesh
+        let refusal = edit.apply(&mut self.mesh, &mut record).err();
+        (refusal.map(|refusal| refusal.to_string()), record, cut)
     }
 }
 
-/// Returns the first `most` entries of two lists.
-fn first<T>(most: usize, one: Vec<T>, other: Vec<T>) -> Vec<T> {
-    one.into_iter().chain(other).take(most).collect()
+/// Returns the name of an element, and its handles before and after an edit, as text.
+fn moved<H: Handle>(name: ElementName, handles: [H; 2]) -> [String; 3] {
+    let [before, after] = handles.map(|handle| format!("{handle:?}"));
+    [name.to_string(), before, after]
 }
 
 /// The rows that an edit changes, writes or reads.

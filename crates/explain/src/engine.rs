@@ -13,9 +13,9 @@ use sixfold::io::parse_creases;
 use sixfold::repair::{Fault, diagnose, repair_for};
 use sixfold::subdivision::Scheme;
 use sixfold::{Facts, PolygonMesh, Relation, StructureInfo, UnknownName, structure_infos};
+use sixfold_core::{EditByName, EditTextError};
 
 use crate::built_mesh::Geometry;
-use crate::edit_command::EditCommand;
 use crate::error::{ExplainError, Refused};
 use crate::records::{Records, row_name};
 use crate::structure::Structure;
@@ -141,7 +141,7 @@ struct Query {
 /// | `mesh` | `{"shape": {"name": "torus", "parameters": {"m": 8}}}`, a shape of `sixfold generate`; `{"file": {"name": "a.obj", "text": "…"}}`, or `"base64"` for a binary file; `{"polygons": {"positions": [[0, 0, 0], …], "faces": [[0, 1, 2], …]}}`, in which `null` is a number without an element; `"last"`, the mesh that the [`Engine`] keeps |
 /// | `triangulate` | `true` cuts every polygon into triangles; not with the mesh `"last"` |
 /// | `creases` | sharp edges and corners, as the text of a crease file ([`parse_creases`]); they are added to those of the mesh file; not with the mesh `"last"` |
-/// | `edits` | edits before what is asked, as text ([`EditCommand`](crate::EditCommand)) |
+/// | `edits` | edits before what is asked, as text ([`EditByName`](crate::EditByName)) |
 /// | `structures` | names; all six if missing |
 /// | `ask` | one of the following |
 ///
@@ -285,7 +285,7 @@ impl Request {
     fn answer(&self, kept: &mut Kept) -> Result<Response, Error> {
         let edits = self.edits.iter().enumerate().map(|(i, edit)| {
             edit.parse()
-                .map_err(|error: ExplainError| format!("edits, number {}: {error}", i + 1))
+                .map_err(|error: EditTextError| format!("edits, number {}: {error}", i + 1))
         });
         let mut subject = Subject {
             structures: self.chosen(Structure::all(), Structure::name)?,
@@ -348,7 +348,7 @@ impl Query {
 /// What a request asks about.
 struct Subject<'k> {
     kept: &'k mut Kept,
-    edits: Vec<EditCommand>,
+    edits: Vec<EditByName>,
     structures: Vec<Structure>,
     infos: Vec<StructureInfo>,
 }
@@ -452,7 +452,7 @@ impl Subject<'_> {
         })
     }
 
-    fn edit(&mut self, edit: &EditCommand) -> Content {
+    fn edit(&mut self, edit: &EditByName) -> Content {
         self.each_built(|_, edited| edited.edit(edit).map(Answer::Edit))
     }
 

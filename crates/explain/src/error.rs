@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 use sixfold::{BuildError, Relation, UnknownName};
-
-use crate::element::ElementName;
+use sixfold_core::{EditTextError, ElementName, NoElementName};
 
 /// A structure that shows nothing, among others that do.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -27,8 +26,8 @@ pub enum ExplainError {
         refusal: BuildError,
     },
     /// A text that is not the name of an element.
-    #[error("`{name}` names no element: write v3 for a vertex, v0-v1 for an edge, f2 for a face")]
-    BadName { name: String },
+    #[error(transparent)]
+    BadName(#[from] NoElementName),
     /// The structure has no element of this name.
     #[error("{structure} has no {} {name} in this mesh", name.kind())]
     NoSuchElement {
@@ -43,8 +42,8 @@ pub enum ExplainError {
         reason: String,
     },
     /// A text that is not an edit.
-    #[error("{reason}")]
-    BadEdit { reason: String },
+    #[error(transparent)]
+    BadEdit(#[from] EditTextError),
     /// The structure was given without its editable form.
     #[error("{structure} has no edits")]
     NoEdits { structure: &'static str },

@@ -34,8 +34,6 @@
 
 mod built_mesh;
 mod edit;
-mod edit_command;
-mod element;
 mod engine;
 mod error;
 mod named_mesh;
@@ -49,12 +47,11 @@ mod walk_parser;
 
 pub use built_mesh::{BuiltMesh, Geometry};
 pub use edit::{EditTrace, Elements, ReadRows, RowChange};
-pub use edit_command::EditCommand;
-pub use element::ElementName;
 pub use engine::{Engine, respond};
 pub use error::{ExplainError, Refused};
 pub use reason::Reason;
 pub use records::{Record, RecordColumn, Records};
+pub use sixfold_core::{EditByName, EditTextError, ElementName, NoElementName};
 pub use structure::Structure;
 pub use trace::{Cost, Query, Read, Step, Trace};
 pub use walk::{Comparison, Walk};

@@ -2,15 +2,11 @@
 
 use std::collections::HashMap;
 
-use rustc_hash::{FxHashMap, FxHashSet};
-use sixfold::{Changes, PolygonMesh, Representation};
+use sixfold::{PolygonMesh, Representation};
 use sixfold_core::{
-    Described, Element, FaceId, Field, Handle, Measured, RecordTable, RowName, Traced, VertexId,
-    row,
+    Described, Element, ElementName, ElementNames, Field, Measured, RecordTable, RowName, Traced,
 };
-use smallvec::SmallVec;
 
-use crate::element::ElementName;
 use crate::error::ExplainError;
 
 /// A structure that was built from a mesh. A probe records all reads, also those of descriptions, so the
@@ -22,8 +18,9 @@ pub(crate) struct NamedMesh<P: Described> {
     pub(crate) probe: Traced,
     /// The bytes of a row, by the name of the table.
     pub(crate) row_bytes: HashMap<String, usize>,
-    pub(crate) vertices: Names<P::Vertex>,
-    pub(crate) faces: Names<P::Face>,
+    pub(crate) names: ElementNames<P::Vertex, P::Face>,
+    /// True if an edit has given an element another handle.
+    pub(crate) has_moved: bool,
 }
 
 /// The tables of a mesh of any type. What needs no more is compiled once, and not for each structure.
@@ -57,13 +54,6 @@ where
         structure: M::NAME,
         refusal,
     })?;
-    let vertices = (0..row(polygons.vertex_count())).map(VertexId::new);
-    let vertices = vertices.map(|v| M::vertex_handle(polygons, v));
-    // A soup has no vertex without a face.
-    let held: FxHashSet<M::Vertex> = mesh.vertices().collect();
-    let vertices = Names::new(vertices.map(|v| held.contains(&v).then_some(v)));
-    let faces = (0..row(polygons.face_count())).map(FaceId::new);
-    let faces = Names::new(faces.map(|f| Some(M::face_handle(polygons, f))));
     let tables = mesh.memory().tables.into_iter();
     let row_bytes = tables.map(|table| (table.table.into_owned(), table.row_bytes));
     let row_bytes = row_bytes.collect();
@@ -73,13 +63,13 @@ where
         mesh: mesh.probed(probe.clone()),
         probe,
         row_bytes,
-        vertices,
-        faces,
+        names: ElementNames::new::<M>(polygons),
+        has_moved: false,
     })
 }
 
 impl<P: Described> NamedMesh<P> {
-    fn missing(&self, name: ElementName) -> ExplainError {
+    pub(crate) fn missing(&self, name: ElementName) -> ExplainError {
         ExplainError::NoSuchElement {
             structure: self.structure,
             name,
@@ -97,7 +87,7 @@ impl<P: Described> NamedMesh<P> {
 
     pub(crate) fn vertex(&self, name: ElementName) -> Result<P::Vertex, ExplainError> {
         let handle = match name {
-            ElementName::Vertex(v) => self.vertices.handle(v),
+            ElementName::Vertex(v) => self.names.vertex(v),
             _ => None,
         };
         handle.ok_or_else(|| self.missing(name))
@@ -107,14 +97,14 @@ impl<P: Described> NamedMesh<P> {
         let ElementName::Edge(ends) = name else {
             return Err(self.missing(name));
         };
-        let [a, b] = ends.map(|v| self.vertices.handle(v).ok_or_else(|| self.missing(name)));
+        let [a, b] = ends.map(|v| self.names.vertex(v).ok_or_else(|| self.missing(name)));
         let edge = self.mesh.edge_between(a?, b?);
         edge.ok_or_else(|| self.missing(name))
     }
 
     pub(crate) fn face(&self, name: ElementName) -> Result<P::Face, ExplainError> {
         let handle = match name {
-            ElementName::Face(f) => self.faces.handle(f),
+            ElementName::Face(f) => self.names.face(f),
             _ => None,
         };
         handle.ok_or_else(|| self.missing(name))
@@ -123,7 +113,7 @@ impl<P: Described> NamedMesh<P> {
     /// Returns the rows of vertices and faces whose elements have other numbers: the name of the row, and the
     /// name of the element. An element with several names has the lowest.
     pub(crate) fn moved_rows(&self) -> Vec<[String; 2]> {
-        if !self.vertices.has_moved && !self.faces.has_moved {
+        if !self.has_moved {
             return Vec::new();
         }
         let mut moved = Vec::new();
@@ -134,12 +124,12 @@ impl<P: Described> NamedMesh<P> {
             let rows = rows.filter(|name| name.row as usize != number);
             moved.extend(rows.map(|name| [name.to_string(), format!("{letter}{number}")]));
         };
-        for (number, handle) in self.vertices.handles().iter().enumerate() {
+        for (number, handle) in self.names.vertices().iter().enumerate() {
             if let &Some(v) = handle {
                 add('v', number, self.mesh.rows_of(Element::Vertex(v)));
             }
         }
-        for (number, handle) in self.faces.handles().iter().enumerate() {
+        for (number, handle) in self.names.faces().iter().enumerate() {
             if let &Some(f) = handle {
                 add('f', number, self.mesh.rows_of(Element::Face(f)));
             }
@@ -147,13 +137,22 @@ impl<P: Described> NamedMesh<P> {
         moved
     }
 
+    /// Returns the number of a vertex of the mesh.
+    pub(crate) fn vertex_number(&self, v: P::Vertex) -> u32 {
+        let number = self.names.vertex_number(v);
+        number.expect("all vertices of the mesh have names")
+    }
+
     /// Returns the name of an element: of an edge also its row, such as `e4 = v0-v1`.
     pub(crate) fn name(&self, element: Element<P>) -> String {
         match element {
-            Element::Vertex(v) => format!("v{}", self.vertices.number(v)),
-            Element::Face(f) => format!("f{}", self.faces.number(f)),
+            Element::Vertex(v) => format!("v{}", self.vertex_number(v)),
+            Element::Face(f) => {
+                let number = self.names.face_number(f);
+                format!("f{}", number.expect("all faces of the mesh have names"))
+            }
             Element::Edge(e) => {
-                let [a, b] = (self.mesh.edge_vertices(e)).map(|v| self.vertices.number(v));
+                let [a, b] = (self.mesh.edge_vertices(e)).map(|v| self.vertex_number(v));
                 let pair = ElementName::Edge([a.min(b), a.max(b)]);
                 let rows = self.mesh.rows_of(element);
                 match rows.first().filter(|row| row.letter != "v") {
@@ -163,98 +162,4 @@ impl<P: Described> NamedMesh<P> {
             }
         }
     }
-}
-
-/// The handles of the elements of one kind, by number: first those of the mesh, then new ones in the
-/// order in which they are made.
-pub(crate) struct Names<H> {
-    /// `None` if the element was deleted, or if the structure does not have it.
-    handles: Vec<Option<H>>,
-    /// The numbers of a handle. Vertices of a soup at one position have one handle.
-    numbers: FxHashMap<H, SmallVec<[u32; 1]>>,
-    /// True if an edit has given an element another handle.
-    has_moved: bool,
-}
-
-impl<H: Handle> Names<H> {
-    fn new(handles: impl Iterator<Item = Option<H>>) -> Self {
-        let mut names = Self {
-            handles: Vec::new(),
-            numbers: FxHashMap::default(),
-            has_moved: false,
-        };
-        handles.for_each(|handle| names.push(handle));
-        names
-    }
-
-    fn push(&mut self, handle: Option<H>) {
-        if let Some(handle) = handle {
-            let number = row(self.handles.len());
-            self.numbers.entry(handle).or_default().push(number);
-        }
-        self.handles.push(handle);
-    }
-
-    fn handle(&self, number: u32) -> Option<H> {
-        self.handles.get(number as usize).copied().flatten()
-    }
-
-    /// Returns all handles in the order of the numbers.
-    pub(crate) fn handles(&self) -> &[Option<H>] {
-        &self.handles
-    }
-
-    /// Returns the number of an element of the mesh: the lowest, if it has several.
-    pub(crate) fn number(&self, handle: H) -> u32 {
-        self.numbers[&handle][0]
-    }
-
-    /// Gives the numbers of `old` the handle `new`; `None` if the element was deleted. Returns the
-    /// numbers.
-    fn replace(&mut self, old: H, new: Option<H>) -> SmallVec<[u32; 1]> {
-        let numbers = self.numbers.remove(&old).unwrap_or_default();
-        for &number in &numbers {
-            self.handles[number as usize] = new;
-        }
-        numbers
-    }
-
-    /// Follows the changes of one edit. Returns the names of new, deleted and renamed elements.
-    pub(crate) fn follow(&mut self, letter: char, changes: &Changes<H>) -> Followed {
-        let name = |number: u32| format!("{letter}{number}");
-        let mut followed = Followed::default();
-        for &removed in &changes.removed {
-            let numbers = self.replace(removed, None);
-            followed.removed.extend(numbers.into_iter().map(name));
-        }
-        // An element can get the old handle of another, so all old ones are replaced first.
-        let renamed = changes.renamed.iter().filter(|[old, new]| old != new);
-        let renamed: Vec<_> = renamed
-            .map(|&[old, new]| (old, new, self.replace(old, Some(new))))
-            .collect();
-        self.has_moved |= !renamed.is_empty();
-        for (old, new, numbers) in renamed {
-            let [old_row, new_row] = [old, new].map(|handle| format!("{handle:?}"));
-            let names = numbers.iter().map(|&number| name(number));
-            let rows = names.map(|name| [name, old_row.clone(), new_row.clone()]);
-            followed.renamed.extend(rows);
-            let known = self.numbers.entry(new).or_default();
-            known.extend(numbers);
-            known.sort_unstable();
-        }
-        for &created in &changes.created {
-            followed.created.push(name(row(self.handles.len())));
-            self.push(Some(created));
-        }
-        followed
-    }
-}
-
-/// The names of elements that an edit changed.
-#[derive(Default)]
-pub(crate) struct Followed {
-    pub(crate) created: Vec<String>,
-    pub(crate) removed: Vec<String>,
-    /// The name of the element, and its handle before and after.
-    pub(crate) renamed: Vec<[String; 3]>,
 }

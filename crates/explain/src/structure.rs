@@ -1,10 +1,9 @@
 //! The structures that can be explained.
 
 use sixfold::{MeshEdit, PolygonMesh, Representation};
-use sixfold_core::{Described, Measured, Traced};
+use sixfold_core::{Described, EditByName, Measured, Traced};
 
 use crate::built_mesh::BuiltMesh;
-use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::named_mesh::named_mesh;
 
@@ -79,7 +78,7 @@ impl Structure {
     pub fn build_after(
         &self,
         polygons: &PolygonMesh,
-        edits: &[EditCommand],
+        edits: &[EditByName],
     ) -> Result<BuiltMesh, ExplainError> {
         let mut mesh = self.build(polygons)?;
         for edit in edits {

@@ -41,18 +41,16 @@ fn build<M: Representation + 'static>(
 
 impl<M: MeshQuery> Swept for M {
     fn sweep(&self, relation: Relation, queries: usize) -> usize {
-        let (vertices, edges, faces) = (|| self.vertices(), || self.edges(), || self.faces());
-        match relation {
-            Relation::VertexVertices => run(queries, vertices, |v| count(self.vertex_vertices(v))),
-            Relation::VertexEdges => run(queries, vertices, |v| count(self.vertex_edges(v))),
-            Relation::VertexFaces => run(queries, vertices, |v| count(self.vertex_faces(v))),
-            Relation::EdgeVertices => run(queries, edges, |e| count(self.edge_vertices(e))),
-            Relation::EdgeEdges => run(queries, edges, |e| count(self.edge_edges(e))),
-            Relation::EdgeFaces => run(queries, edges, |e| count(self.edge_faces(e))),
-            Relation::FaceVertices => run(queries, faces, |f| count(self.face_vertices(f))),
-            Relation::FaceEdges => run(queries, faces, |f| count(self.face_edges(f))),
-            Relation::FaceFaces => run(queries, faces, |f| count(self.face_faces(f))),
+        macro_rules! run_relation {
+            ($query:ident $list:ident $from:ident $to:ident) => {
+                run(
+                    queries,
+                    || self.$list(),
+                    |element| count(self.$query(element)),
+                )
+            };
         }
+        sixfold_core::match_relation!(relation, run_relation!)
     }
 }
 

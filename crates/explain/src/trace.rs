@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 use sixfold::Relation;
-use sixfold_core::{Access, Column, Described, Element, Field, Line, RecordTable};
+use sixfold_core::{Access, Column, Described, Element, ElementName, Field, Line, RecordTable};
 
-use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::{Inference, Reason};
@@ -143,36 +142,15 @@ fn run<P: Described>(
             }
         }
     };
-    match (relation, element) {
-        (Relation::VertexVertices, Element::Vertex(v)) => {
-            record(&mut mesh.vertex_vertices(v).map(Element::Vertex));
-        }
-        (Relation::VertexEdges, Element::Vertex(v)) => {
-            record(&mut mesh.vertex_edges(v).map(Element::Edge));
-        }
-        (Relation::VertexFaces, Element::Vertex(v)) => {
-            record(&mut mesh.vertex_faces(v).map(Element::Face));
-        }
-        (Relation::EdgeVertices, Element::Edge(e)) => {
-            record(&mut mesh.edge_vertices(e).into_iter().map(Element::Vertex));
-        }
-        (Relation::EdgeEdges, Element::Edge(e)) => {
-            record(&mut mesh.edge_edges(e).map(Element::Edge));
-        }
-        (Relation::EdgeFaces, Element::Edge(e)) => {
-            record(&mut mesh.edge_faces(e).map(Element::Face));
-        }
-        (Relation::FaceVertices, Element::Face(f)) => {
-            record(&mut mesh.face_vertices(f).map(Element::Vertex));
-        }
-        (Relation::FaceEdges, Element::Face(f)) => {
-            record(&mut mesh.face_edges(f).map(Element::Edge));
-        }
-        (Relation::FaceFaces, Element::Face(f)) => {
-            record(&mut mesh.face_faces(f).map(Element::Face));
-        }
-        _ => unreachable!("the kind of the element was checked"),
+    macro_rules! record_relation {
+        ($query:ident $list:ident $from:ident $to:ident) => {{
+            let Element::$from(element) = element else {
+                unreachable!("the kind of the element was checked")
+            };
+            record(&mut mesh.$query(element).into_iter().map(Element::$to));
+        }};
     }
+    sixfold_core::match_relation!(relation, record_relation!);
 }
 
 /// Returns what reads cost.

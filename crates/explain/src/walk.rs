@@ -5,10 +5,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use serde::Serialize;
 use sixfold::{Relation, UnknownName};
 use sixfold_core::{
-    Access, AccessKind, Column, Described, Field, RecordTable, RowName, Traced, Word,
+    Access, AccessKind, Column, Described, ElementName, Field, RecordTable, RowName, Traced, Word,
 };
 
-use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::Reason;
@@ -37,7 +36,8 @@ pub struct Walk {
     pub expected: Option<Comparison>,
 }
 
-/// The comparison of the results of a walk with a relation. The order does not count.
+/// The comparison of the results of a walk with a relation. The order does not count, and each difference
+/// is listed once.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Comparison {
     /// The relation.
@@ -46,8 +46,37 @@ pub struct Comparison {
     pub element: String,
     /// The results of the relation that the walk does not yield.
     pub missing: Vec<String>,
-    /// The results of the walk that the relation does not have, or has less often.
+    /// The results of the walk that the relation does not have.
     pub extra: Vec<String>,
+    /// The results of the relation that the walk yields more than once.
+    pub repeated: Vec<String>,
+    /// The comparison as a sentence.
+    pub verdict: String,
+}
+
+impl Comparison {
+    /// Returns whether the walk yields the results of the relation, each once.
+    pub fn is_right(&self) -> bool {
+        self.missing.is_empty() && self.extra.is_empty() && self.repeated.is_empty()
+    }
+
+    fn sentence(&self) -> String {
+        let (relation, element) = (self.relation, &self.element);
+        if self.is_right() {
+            return format!("Right: the walk yields {relation} of {element}.");
+        }
+        let differences = [
+            ("does not yield ", &self.missing, ""),
+            ("yields ", &self.extra, ", not in this relation"),
+            ("repeats ", &self.repeated, ""),
+        ];
+        let differences = differences.iter().filter(|(_, names, _)| !names.is_empty());
+        let differences = differences
+            .map(|(verb, names, note)| format!("{verb}{}{note}", names.join(", ")))
+            .collect::<Vec<_>>();
+        let differences = differences.join("; it ");
+        format!("Not {relation} of {element}: the walk {differences}.")
+    }
 }
 
 /// Runs a walk.
@@ -103,20 +132,32 @@ fn compare<P: Described>(
     let query = trace(named, relation, element)?;
     // The name of an edge is its row and its ends.
     let row = |name: &String| name.split(' ').next().unwrap_or_default().to_owned();
-    let mut missing: Vec<String> = query.results.iter().map(row).collect();
-    let mut extra = Vec::new();
+    let right: Vec<String> = query.results.iter().map(row).collect();
+    let mut missing = right.clone();
+    let (mut extra, mut repeated) = (Vec::new(), Vec::new());
     for result in results {
-        match missing.iter().position(|name| name == result) {
-            Some(place) => drop(missing.remove(place)),
-            None => extra.push(result.clone()),
+        let list = match missing.iter().position(|name| name == result) {
+            Some(place) => {
+                missing.remove(place);
+                continue;
+            }
+            None if right.contains(result) => &mut repeated,
+            None => &mut extra,
+        };
+        if !list.contains(result) {
+            list.push(result.clone());
         }
     }
-    Ok(Comparison {
+    let mut comparison = Comparison {
         relation,
         element: query.element,
         missing,
         extra,
-    })
+        repeated,
+        verdict: String::new(),
+    };
+    comparison.verdict = comparison.sentence();
+    Ok(comparison)
 }
 
 /// Why a walk ends before its last line.

@@ -2,8 +2,9 @@
 //! each other.
 
 use sixfold::{
-    Edit, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal, Representation,
+    Edit, FaceId, FaceVertexMesh, MeshEdit, Point, PolygonMesh, Refusal, Representation,
 };
+use sixfold_core::{EditOf, edit_at_triangle};
 
 /// Returns at most `max_count` faces, spread over the mesh. The surroundings of two faces share no
 /// vertices. The surroundings of a face are all faces that touch a corner of the face.
@@ -48,94 +49,18 @@ const fn gcd(mut a: usize, mut b: usize) -> usize {
     a
 }
 
-/// The arguments of an edit at one place.
-pub(crate) struct EditPlace<M: MeshQuery> {
-    pub(crate) face: M::Face,
-    corners: [M::Vertex; 3],
-    edge: Option<M::Edge>,
-    /// A neighbour of the first corner that is not a corner of the face.
-    far_neighbour: Option<M::Vertex>,
-    position: Point,
-}
-
-impl<M: Representation> EditPlace<M> {
-    /// Looks up the arguments of `edit` at face `f`.
-    pub(crate) fn new(mesh: &M, polygons: &PolygonMesh, edit: Edit, f: FaceId) -> Self {
-        let takes_edge = matches!(
-            edit,
-            Edit::SplitEdge
-                | Edit::BisectEdge
-                | Edit::SplitFace
-                | Edit::DissolveEdge
-                | Edit::FlipEdge
-                | Edit::CollapseEdge
-        );
-        let ids = polygons.faces().face(f);
-        let corners = [0, 1, 2].map(|i| M::vertex_handle(polygons, ids[i]));
-        let [a, b, c] = [0, 1, 2].map(|i: usize| polygons.position(ids[i]));
-        let mut place = Self {
-            face: M::face_handle(polygons, f),
-            corners,
-            edge: None,
-            far_neighbour: None,
-            position: (a + b + c) / 3.0 + Point::splat(1e-3),
-        };
-        if takes_edge {
-            place.edge = mesh.edge_between(corners[0], corners[1]);
-        }
-        if edit == Edit::SplitVertex {
-            let mut around = mesh.vertex_vertices(corners[0]);
-            place.far_neighbour = around.find(|v| !corners.contains(v));
-        }
-        place
-    }
-}
-
-/// Prepares one place for the edit.
-pub(crate) fn prepare_place<M: MeshEdit>(
+/// Returns an edit of the given kind at face `f` of `polygons`, a triangle. Prepares `mesh` for it.
+pub(crate) fn prepare_edit<M: Representation + MeshEdit>(
     mesh: &mut M,
+    polygons: &PolygonMesh,
     edit: Edit,
-    place: &mut EditPlace<M>,
-) -> Result<(), Refusal<M>> {
-    match edit {
-        Edit::AddFace | Edit::Compact => mesh.remove_face(place.face),
-        Edit::SplitFace => {
-            let edge = place.edge.take();
-            let edge = edge.expect("`EditPlace::new` looked up the edge");
-            place.face = mesh.dissolve_edge(edge)?;
-            Ok(())
-        }
-        _ => Ok(()),
-    }
-}
-
-#[inline(always)]
-pub(crate) fn apply_edit<M: MeshEdit>(
-    mesh: &mut M,
-    edit: Edit,
-    place: &EditPlace<M>,
-) -> Result<(), Refusal<M>> {
-    let [a, b, c] = place.corners;
-    let edge = || place.edge.expect("`EditPlace::new` looked up the edge");
-    match edit {
-        Edit::SetPosition => mesh.set_position(a, place.position).map(drop),
-        Edit::AddVertex => mesh.add_vertex(place.position).map(drop),
-        Edit::AddFace => mesh.add_face(&[a, b, c]).map(drop),
-        Edit::RemoveFace => mesh.remove_face(place.face),
-        Edit::RemoveVertex => mesh.remove_vertex(a),
-        Edit::SplitEdge => mesh.split_edge(edge(), place.position).map(drop),
-        Edit::BisectEdge => mesh.bisect_edge(edge(), place.position).map(drop),
-        Edit::PokeFace => mesh.poke_face(place.face, place.position).map(drop),
-        Edit::SplitFace => mesh.split_face(place.face, [a, b]).map(drop),
-        Edit::DissolveEdge => mesh.dissolve_edge(edge()).map(drop),
-        Edit::FlipEdge => mesh.flip_edge(edge()).map(drop),
-        Edit::CollapseEdge => mesh.collapse_edge(edge(), a, place.position).map(drop),
-        Edit::SplitVertex => mesh
-            .split_vertex(a, Some(b), place.far_neighbour, place.position)
-            .map(drop),
-        // Passes over the whole mesh run elsewhere.
-        _ => Ok(()),
-    }
+    f: FaceId,
+) -> Result<EditOf<M>, Refusal<M>> {
+    let ids = polygons.faces().face(f);
+    let corners = [0, 1, 2].map(|i| M::vertex_handle(polygons, ids[i]));
+    let [a, b, c] = [0, 1, 2].map(|i: usize| polygons.position(ids[i]));
+    let at = (a + b + c) / 3.0 + Point::splat(1e-3);
+    edit_at_triangle(mesh, edit, M::face_handle(polygons, f), corners, at)
 }
 
 #[cfg(test)]

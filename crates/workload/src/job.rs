@@ -79,8 +79,8 @@ impl From<Operation> for Job {
 }
 
 /// A sample of the elements. If the queries at elements of one kind scan the mesh, only the first
-/// elements of this kind in a random order are visited. A structure that never scans visits all
-/// elements. Subdivisions and edit passes run on a separate mesh of about `size` faces.
+/// elements of this kind in a random order are visited. Subdivisions and edit passes run on a
+/// separate mesh of about `size` faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElementSample {
     /// One value for each kind of element (vertex, edge, face). The value is true if only a sample

@@ -75,36 +75,16 @@ impl<M: MeshQuery> ReadCounter<'_, M> {
             elements,
             queried: queried.min(elements),
         };
-        let (v, e, f) = (|| mesh.vertices(), || mesh.edges(), || mesh.faces());
-        match relation {
-            Relation::VertexVertices => {
-                self.count_sweep(sweep, v, |v| count_results(mesh.vertex_vertices(v)))
-            }
-            Relation::VertexEdges => {
-                self.count_sweep(sweep, v, |v| count_results(mesh.vertex_edges(v)))
-            }
-            Relation::VertexFaces => {
-                self.count_sweep(sweep, v, |v| count_results(mesh.vertex_faces(v)))
-            }
-            Relation::EdgeVertices => {
-                self.count_sweep(sweep, e, |e| count_results(mesh.edge_vertices(e)))
-            }
-            Relation::EdgeEdges => {
-                self.count_sweep(sweep, e, |e| count_results(mesh.edge_edges(e)))
-            }
-            Relation::EdgeFaces => {
-                self.count_sweep(sweep, e, |e| count_results(mesh.edge_faces(e)))
-            }
-            Relation::FaceVertices => {
-                self.count_sweep(sweep, f, |f| count_results(mesh.face_vertices(f)))
-            }
-            Relation::FaceEdges => {
-                self.count_sweep(sweep, f, |f| count_results(mesh.face_edges(f)))
-            }
-            Relation::FaceFaces => {
-                self.count_sweep(sweep, f, |f| count_results(mesh.face_faces(f)))
-            }
+        macro_rules! count_relation {
+            ($query:ident $list:ident $from:ident $to:ident) => {
+                self.count_sweep(
+                    sweep,
+                    || mesh.$list(),
+                    |element| count_results(mesh.$query(element)),
+                )
+            };
         }
+        sixfold_core::match_relation!(relation, count_relation!)
     }
 
     /// Lists the elements one by one, as the timed sweep does, and queries the selected elements.

@@ -1,10 +1,11 @@
 //! One kind of edit, measured at many faces of a mesh.
 
-use sixfold::{Edit, MeshEdit, PolygonMesh, Representation};
+use sixfold::{Edit, MeshEdit, PolygonMesh, Refusal, Representation};
+use sixfold_core::EditOf;
 
 use crate::backend::Backend;
 use crate::edit_pass::{Editor, Edits, PreparedEditor};
-use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
+use crate::edit_place::{independent_faces, prepare_edit};
 use crate::series::{ReusedCopies, Series};
 use sixfold_results::Time;
 
@@ -49,7 +50,8 @@ pub(crate) fn prepare_single<M: Representation + MeshEdit + 'static>(
 struct SingleEditRun<M: MeshEdit> {
     edit: Edit,
     mesh: M,
-    places: Vec<EditPlace<M>>,
+    /// One for each place.
+    calls: Vec<EditOf<M>>,
     copies: ReusedCopies<(M, Edits)>,
 }
 
@@ -60,16 +62,15 @@ impl<M: Representation + MeshEdit + 'static> SingleEditRun<M> {
             return Err(format!("face {f} is not a triangle"));
         }
         let faces = independent_faces(polygons, job.places)?;
-        let look_up = |f| EditPlace::new(&mesh, polygons, job.edit, f);
-        let mut places: Vec<EditPlace<M>> = faces.into_iter().map(look_up).collect();
-        for place in &mut places {
-            let prepared = prepare_place(&mut mesh, job.edit, place);
-            prepared.map_err(|refusal| refusal.to_string())?;
-        }
+        let calls = faces
+            .into_iter()
+            .map(|f| prepare_edit(&mut mesh, polygons, job.edit, f));
+        let calls: Result<_, Refusal<M>> = calls.collect();
+        let calls = calls.map_err(|refusal| refusal.to_string())?;
         Ok(Self {
             edit: job.edit,
             mesh,
-            places,
+            calls,
             copies: ReusedCopies::default(),
         })
     }
@@ -80,7 +81,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for SingleEditRun<M> {
         let Self {
             edit,
             mesh,
-            places,
+            calls,
             copies,
         } = self;
         copies.time(
@@ -88,7 +89,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for SingleEditRun<M> {
             mesh.memory().total(),
             || (mesh.clone(), Edits::default()),
             |(copy, _)| copy.clone_from(mesh),
-            |(copy, edits)| *edits = apply_at_all_places(*edit, copy, places),
+            |(copy, edits)| *edits = apply_at_all_places(*edit, copy, calls),
         )
     }
 
@@ -107,7 +108,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for SingleEditRun<M> {
 fn apply_at_all_places<M: MeshEdit + Representation>(
     edit: Edit,
     mesh: &mut M,
-    places: &[EditPlace<M>],
+    calls: &[EditOf<M>],
 ) -> Edits {
     let mut edits = Edits::default();
     match edit {
@@ -119,10 +120,10 @@ fn apply_at_all_places<M: MeshEdit + Representation>(
             mesh.remove_isolated_vertices();
             edits.done = 1;
         }
-        edit => {
-            for (i, place) in places.iter().enumerate() {
-                match apply_edit(mesh, edit, place) {
-                    Ok(()) => edits.done += 1,
+        _ => {
+            for (i, call) in calls.iter().enumerate() {
+                match call.apply(mesh, &mut ()) {
+                    Ok(_) => edits.done += 1,
                     Err(_) => edits.refuse(i),
                 }
             }

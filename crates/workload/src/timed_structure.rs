@@ -279,8 +279,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
             }
             (_, sample, Some(subdivision)) => self.subdivide(subdivision, sample, series),
             (Operation::Build, ..) => self.build(series),
-            // Not compiled for structures without a scan, which always visit all elements.
-            (operation, Some(sample), None) if const { !QueryCost::are_local(&M::COSTS) } => {
+            (operation, Some(sample), None) => {
                 return self.run_sampled(operation, sample, series);
             }
             (Operation::VvSmooth, ..) => self.smooth(series),

@@ -3,18 +3,17 @@
 //! A trace names vertices and faces by their numbers in the mesh file, and edges by their two ends.
 //! Before the timing, each structure translates the names to its own handles.
 
-mod names;
 mod replay;
 #[cfg(test)]
 mod tests;
 mod text;
 
-use sixfold::{Edit, Point, Relation};
+use sixfold::Relation;
+use sixfold_core::EditByName;
 
 use crate::operation::ElementKind;
 
-pub(crate) use names::Names;
-pub(crate) use replay::{EditReplay, MoveReplay, QueryReplay, affected_faces};
+pub(crate) use replay::{EditReplay, MoveReplay, QueryReplay};
 pub use text::TraceError;
 
 /// The calls of one run of a program.
@@ -31,7 +30,7 @@ pub struct Trace {
     pub own_ns: f64,
     pub(crate) calls: Vec<Call>,
     /// The edits, in order.
-    pub(crate) edits: Vec<EditCall>,
+    pub(crate) edits: Vec<TracedEdit>,
 }
 
 /// One call.
@@ -69,31 +68,12 @@ pub(crate) enum Op {
     SetPositions,
 }
 
-/// One edit, with the names of its arguments.
+/// One edit.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct EditCall {
-    pub(crate) edit: Edit,
-    /// The vertices among the arguments; the ends of an edge come first. [`NONE`] for an optional
-    /// vertex that is absent.
-    pub(crate) vertices: Vec<u32>,
-    /// The face among the arguments.
-    pub(crate) face: Option<u32>,
-    /// The position among the arguments.
-    pub(crate) at: Option<Point>,
+pub(crate) struct TracedEdit {
+    pub(crate) call: EditByName,
     /// Whether the structure refused the edit.
     pub(crate) refused: bool,
-}
-
-impl EditCall {
-    pub(crate) fn new(edit: Edit) -> Self {
-        Self {
-            edit,
-            vertices: Vec::new(),
-            face: None,
-            at: None,
-            refused: false,
-        }
-    }
 }
 
 /// What a trace needs from a structure.
@@ -139,46 +119,5 @@ impl Trace {
             true => TraceKind::Moves,
             false => TraceKind::Queries,
         }
-    }
-}
-
-/// An argument of an edit, as a line of a trace has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Argument {
-    /// An edge: `A-B`.
-    Edge,
-    /// A face.
-    Face,
-    /// A vertex.
-    Vertex,
-    /// A vertex, or `-` if it is absent. The text is for messages.
-    VertexIfAny(&'static str),
-    /// All remaining words are vertices.
-    Vertices,
-    /// Three coordinates.
-    Position,
-}
-
-/// Returns the arguments of an edit, in their order on a line.
-pub(crate) const fn arguments(edit: Edit) -> &'static [Argument] {
-    use Argument::{Edge, Face, Position, Vertex, VertexIfAny, Vertices};
-    match edit {
-        Edit::SetPosition => &[Vertex, Position],
-        Edit::AddVertex => &[Position],
-        Edit::AddFace => &[Vertices],
-        Edit::RemoveFace => &[Face],
-        Edit::RemoveVertex => &[Vertex],
-        Edit::RemoveIsolatedVertices | Edit::Compact => &[],
-        Edit::SplitEdge | Edit::BisectEdge => &[Edge, Position],
-        Edit::PokeFace => &[Face, Position],
-        Edit::SplitFace => &[Face, Vertex, Vertex],
-        Edit::DissolveEdge | Edit::FlipEdge => &[Edge],
-        Edit::CollapseEdge => &[Edge, Vertex, Position],
-        Edit::SplitVertex => &[
-            Vertex,
-            VertexIfAny("LEFT|-"),
-            VertexIfAny("RIGHT|-"),
-            Position,
-        ],
     }
 }

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use sixfold_core::{Capabilities, Edit, MeshEdit, Point, PolygonMesh, Representation};
 
-use super::action::Action;
+use super::action::{Action, position};
 use crate::weld::position_key;
 
 /// The meshes that a structure can hold, and the edits that it supports.
@@ -134,11 +134,11 @@ impl Model {
     fn is_occupied(&self, action: &Action) -> bool {
         let own = match action {
             Action::SetPosition { v, .. } => [*v; 2],
-            Action::CollapseEdge { ends, .. } => *ends,
+            Action::CollapseEdge { e, .. } => *e,
             _ => [usize::MAX; 2],
         };
         let mut others = self.vertices().filter(|v| !own.contains(v));
-        action.position().is_some_and(|at| {
+        position(action).is_some_and(|at| {
             others.any(|v| self.positions[v].map(position_key) == Some(position_key(at)))
         })
     }

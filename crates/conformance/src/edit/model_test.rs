@@ -350,7 +350,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         if let Some(made) = made {
             let v = match action {
                 Action::SetPosition { v, .. } => *v,
-                Action::CollapseEdge { ends, .. } => ends[0],
+                Action::CollapseEdge { keep, .. } => *keep,
                 _ => self.model.vertices().last().unwrap_or(0),
             };
             let known = self.vertices.insert(v, made);
@@ -380,7 +380,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
                 found.unwrap_or_else(|| panic!("{name}: no face {corners:?} after {action:?}"));
             self.faces.insert(f, found);
         }
-        if let Action::Compact = action {
+        if action.edit() == Edit::Compact {
             self.removed.clear();
         }
     }
@@ -429,7 +429,7 @@ fn euler_step(action: &Action) -> Option<isize> {
 }
 
 /// Returns the lexicographically least rotation of a face.
-fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
+pub(crate) fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
     let from = |i: usize| corners[i..].iter().chain(&corners[..i]);
     let least = (0..corners.len()).min_by(|&i, &j| from(i).cmp(from(j)));
     corners.rotate_left(least.unwrap_or(0));

@@ -59,16 +59,16 @@ impl Step {
             },
             Edit::RemoveFace => Action::RemoveFace { f: face()? },
             Edit::RemoveVertex => Action::RemoveVertex { v: vertex()? },
-            Edit::RemoveIsolatedVertices => Action::RemoveIsolatedVertices,
-            Edit::SplitEdge => Action::SplitEdge { ends: ends()?, at },
-            Edit::BisectEdge => Action::BisectEdge { ends: ends()?, at },
+            Edit::RemoveIsolatedVertices => Action::RemoveIsolatedVertices {},
+            Edit::SplitEdge => Action::SplitEdge { e: ends()?, at },
+            Edit::BisectEdge => Action::BisectEdge { e: ends()?, at },
             Edit::PokeFace => Action::PokeFace { f: face()?, at },
             Edit::SplitFace => self.face_split(model)?,
-            Edit::DissolveEdge => Action::DissolveEdge { ends: ends()? },
-            Edit::FlipEdge => Action::FlipEdge { ends: ends()? },
+            Edit::DissolveEdge => Action::DissolveEdge { e: ends()? },
+            Edit::FlipEdge => Action::FlipEdge { e: ends()? },
             Edit::CollapseEdge => self.collapse(model, at)?,
             Edit::SplitVertex => self.vertex_split(model, vertex()?, at),
-            _ => Action::Compact,
+            _ => Action::Compact {},
         })
     }
 
@@ -137,7 +137,11 @@ impl Step {
         } else {
             at
         };
-        Some(Action::CollapseEdge { ends, to })
+        Some(Action::CollapseEdge {
+            e: ends,
+            keep: ends[0],
+            to,
+        })
     }
 
     fn vertex_split(&self, model: &Model, v: usize, at: Point) -> Action {

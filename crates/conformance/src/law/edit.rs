@@ -4,7 +4,8 @@ use std::cell::{Cell, RefCell};
 use std::fmt::Debug;
 
 use sixfold_core::{
-    Edit, Measured, MeshEdit, Point, PolygonMesh, QueryCost, Representation, Traced,
+    Edit, Measured, MeshEdit, Point, PolygonMesh, QueryCost, Refusal, Representation, Traced,
+    edit_at_triangle,
 };
 
 use super::scripts::on_random_scripts;
@@ -51,7 +52,7 @@ fn run_script<M: Representation + MeshEdit + Debug>(
         }
     }
     test.check_all();
-    test.apply(&Action::Compact);
+    test.apply(&Action::Compact {});
     test.check_all();
     counts_by_edit.set(counts);
 }
@@ -158,48 +159,17 @@ where
             .faces()
             .nth((quarter * count / 4).max(2))
             .expect("a face");
-        let [a, b, c] = triangle_corners(mesh.face_vertices(f));
-        let e = mesh.edge_between(a, b).expect("a side");
-        let quad = (edit == Edit::SplitFace).then(|| mesh.dissolve_edge(e).expect("two triangles"));
-        if edit == Edit::AddFace {
-            mesh.remove_face(f).expect("an inner face");
-        }
-        let neighbours: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
-        let ends = quad.map(|quad| {
-            let corners: Vec<M::Vertex> = mesh.face_vertices(quad).collect();
-            [corners[0], corners[2]]
-        });
+        let corners = triangle_corners(mesh.face_vertices(f));
+        let refused = |refusal: Refusal<M>| -> ! {
+            panic!("{}: {edit} refused on a torus: {refusal}", M::NAME)
+        };
+        let call = edit_at_triangle(&mut mesh, edit, f, corners, at);
+        let call = call.unwrap_or_else(|refusal| refused(refusal));
         let probe = Traced::default();
         let mut probed = mesh.probed(probe.clone());
         probe.take();
-        let refusal = match edit {
-            Edit::SetPosition => probed.set_position(a, at).err(),
-            Edit::AddVertex => probed.add_vertex(at).err(),
-            Edit::AddFace => probed.add_face(&[a, b, c]).err(),
-            Edit::RemoveFace => probed.remove_face(f).err(),
-            Edit::RemoveVertex => probed.remove_vertex(a).err(),
-            Edit::RemoveIsolatedVertices => {
-                probed.remove_isolated_vertices();
-                None
-            }
-            Edit::SplitEdge => probed.split_edge(e, at).err(),
-            Edit::BisectEdge => probed.bisect_edge(e, at).err(),
-            Edit::PokeFace => probed.poke_face(f, at).err(),
-            Edit::SplitFace => {
-                let quad = quad.expect("made above");
-                probed.split_face(quad, ends.expect("a quad")).err()
-            }
-            Edit::DissolveEdge => probed.dissolve_edge(e).err(),
-            Edit::FlipEdge => probed.flip_edge(e).err(),
-            Edit::CollapseEdge => probed.collapse_edge(e, a, at).err(),
-            Edit::SplitVertex => {
-                let other = neighbours.iter().copied().find(|&v| v != b);
-                probed.split_vertex(a, Some(b), other, at).err()
-            }
-            Edit::Compact => None,
-        };
-        if let Some(refusal) = refusal {
-            panic!("{}: {edit} refused on a torus: {refusal}", M::NAME);
+        if let Err(refusal) = call.apply(&mut probed, &mut ()) {
+            refused(refusal);
         }
         max = max.max(probe.take().len());
     }

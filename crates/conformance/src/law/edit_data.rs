@@ -219,7 +219,7 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
             (self.faces[&test.face(f)], corners.collect())
         };
         match action {
-            Action::SplitEdge { ends, .. } | Action::BisectEdge { ends, .. } => {
+            Action::SplitEdge { e: ends, .. } | Action::BisectEdge { e: ends, .. } => {
                 parents.vertices = ends.iter().map(vertex).collect();
                 let handles = ends.map(|v| test.vertex(v));
                 let e = self.mesh.edge_between(handles[0], handles[1]);

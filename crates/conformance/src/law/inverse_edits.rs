@@ -18,10 +18,10 @@ type Undo<M, At> = (&'static [Edit], fn(&ModelTest<M>, At) -> bool);
 pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
     let at_edges: [Undo<M, [usize; 2]>; 4] = [
         (&[Edit::SplitEdge], |test, ends| {
-            is_undone_by_collapse(test, Action::SplitEdge { ends, at: FAR }, ends[0])
+            is_undone_by_collapse(test, Action::SplitEdge { e: ends, at: FAR }, ends[0])
         }),
         (&[Edit::BisectEdge], |test, ends| {
-            is_undone_by_collapse(test, Action::BisectEdge { ends, at: FAR }, ends[0])
+            is_undone_by_collapse(test, Action::BisectEdge { e: ends, at: FAR }, ends[0])
         }),
         (&[Edit::FlipEdge], is_flip_undone),
         (&[Edit::SplitVertex], is_collapse_undone),
@@ -77,7 +77,8 @@ fn is_undone_by_collapse<M: Representation + MeshEdit + Debug>(
     end: usize,
 ) -> bool {
     let collapse = Action::CollapseEdge {
-        ends: [end, new_vertex(test)],
+        e: [end, new_vertex(test)],
+        keep: end,
         to: test.model.position(end).expect("the end exists"),
     };
     is_undone(test, &[split, collapse])
@@ -88,7 +89,7 @@ fn is_flip_undone<M: Representation + MeshEdit + Debug>(
     ends: [usize; 2],
 ) -> bool {
     let mut flipped = test.clone();
-    if !flipped.apply(&Action::FlipEdge { ends }) {
+    if !flipped.apply(&Action::FlipEdge { e: ends }) {
         return false;
     }
     let along = test.model.edges().remove(&ends).expect("the edge exists");
@@ -99,7 +100,7 @@ fn is_flip_undone<M: Representation + MeshEdit + Debug>(
     });
     let apexes: Vec<usize> = apexes.collect();
     flipped.apply(&Action::FlipEdge {
-        ends: [apexes[0], apexes[1]],
+        e: [apexes[0], apexes[1]],
     });
     assert_same(&flipped, test, "flip_edge twice");
     true
@@ -115,7 +116,11 @@ fn is_collapse_undone<M: Representation + MeshEdit + Debug>(
         return false;
     };
     let [keep, removed] = ends.map(|v| test.model.position(v).expect("the end exists"));
-    let collapse = Action::CollapseEdge { ends, to: keep };
+    let collapse = Action::CollapseEdge {
+        e: ends,
+        keep: ends[0],
+        to: keep,
+    };
     let mut collapsed = test.clone();
     if !collapsed.apply(&collapse) {
         return false;
@@ -164,7 +169,10 @@ fn is_face_split_undone<M: Representation + MeshEdit + Debug>(
         return false;
     }
     let ends = [face[0], face[2]];
-    let actions = [Action::SplitFace { f, ends }, Action::DissolveEdge { ends }];
+    let actions = [
+        Action::SplitFace { f, ends },
+        Action::DissolveEdge { e: ends },
+    ];
     is_undone(test, &actions)
 }
 

@@ -1,31 +1,51 @@
-//! The kinds of edits.
+//! The table of edits, and their kinds.
 
 use crate::traits::representation::QueryCost;
 
-crate::named! {
-    /// A kind of edit: one method of [`MeshEdit`](crate::MeshEdit).
-    #[expect(
-        missing_docs,
-        reason = "the names are those of the methods of MeshEdit"
-    )]
-    pub enum Edit: "edit" {
-        SetPosition = "set_position",
-        AddVertex = "add_vertex",
-        AddFace = "add_face",
-        RemoveFace = "remove_face",
-        RemoveVertex = "remove_vertex",
-        RemoveIsolatedVertices = "remove_isolated_vertices",
-        SplitEdge = "split_edge",
-        BisectEdge = "bisect_edge",
-        PokeFace = "poke_face",
-        SplitFace = "split_face",
-        DissolveEdge = "dissolve_edge",
-        FlipEdge = "flip_edge",
-        CollapseEdge = "collapse_edge",
-        SplitVertex = "split_vertex",
-        Compact = "compact",
-    }
+/// Calls a macro with the table of all edits: the value of [`Edit`], the name, the logged method, its
+/// arguments with their kinds (the methods of [`EditArguments`](crate::EditArguments)) and types, and
+/// the kind of the result.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! for_each_edit {
+    ($callback:ident! { $($before:tt)* }) => {
+        $callback! {
+            $($before)*
+            SetPosition "set_position" set_position_logged(v: vertex V, to: position Point) -> vertex;
+            AddVertex "add_vertex" add_vertex_logged(at: position Point) -> vertex;
+            AddFace "add_face" add_face_logged(corners: vertices Vec<V>) -> face;
+            RemoveFace "remove_face" remove_face_logged(f: face F) -> nothing;
+            RemoveVertex "remove_vertex" remove_vertex_logged(v: vertex V) -> nothing;
+            RemoveIsolatedVertices "remove_isolated_vertices" remove_isolated_vertices_logged() -> count;
+            SplitEdge "split_edge" split_edge_logged(e: edge E, at: new_position P) -> vertex;
+            BisectEdge "bisect_edge" bisect_edge_logged(e: edge E, at: new_position P) -> vertex;
+            PokeFace "poke_face" poke_face_logged(f: face F, at: new_position P) -> vertex;
+            SplitFace "split_face" split_face_logged(f: face F, ends: corners [V; 2]) -> edge;
+            DissolveEdge "dissolve_edge" dissolve_edge_logged(e: edge E) -> face;
+            FlipEdge "flip_edge" flip_edge_logged(e: edge E) -> edge;
+            CollapseEdge "collapse_edge" collapse_edge_logged(e: edge E, keep: vertex V, to: new_position P) -> vertex;
+            SplitVertex "split_vertex" split_vertex_logged(v: vertex V, left: vertex_if_any Option<V>, right: vertex_if_any Option<V>, at: new_position P) -> vertex;
+            Compact "compact" compact_logged() -> unit;
+        }
+    };
 }
+
+macro_rules! edit_kinds {
+    ($($edit:ident $name:literal $method:ident($($a:ident: $kind:ident $type:ty),*) -> $result:ident;)+) => {
+        crate::named! {
+            /// A kind of edit: one method of [`MeshEdit`](crate::MeshEdit).
+            #[expect(
+                missing_docs,
+                reason = "the names are those of the methods of MeshEdit"
+            )]
+            pub enum Edit: "edit" {
+                $($edit = $name,)+
+            }
+        }
+    };
+}
+
+crate::for_each_edit!(edit_kinds! {});
 
 impl Edit {
     /// The costs of the edits in a structure that stores adjacency. `set_position` and `add_vertex`

@@ -236,6 +236,6 @@ fn check_coincident_corners(polygons: &PolygonMesh) -> Result<(), BuildError> {
 }
 
 /// Returns the bits of the coordinates, with −0 replaced by 0.
-fn coordinates(point: Point) -> [u32; 3] {
+pub(crate) fn coordinates(point: Point) -> [u32; 3] {
     point.to_array().map(|x| (x + 0.0).to_bits())
 }

@@ -25,6 +25,29 @@ crate::named! {
     }
 }
 
+/// Matches a [`Relation`], and calls a macro in each arm: `match_relation!(relation, arm!)`.
+///
+/// The macro gets the name of the query, the method that lists the queried elements, and the kinds of
+/// the queried elements and of the results: `arm!(vertex_edges vertices Vertex Edge)`. So the nine
+/// relations are in one place, and an arm can define a function of its own for each of them.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! match_relation {
+    ($relation:expr, $arm:ident!) => {
+        match $relation {
+            $crate::Relation::VertexVertices => $arm!(vertex_vertices vertices Vertex Vertex),
+            $crate::Relation::VertexEdges => $arm!(vertex_edges vertices Vertex Edge),
+            $crate::Relation::VertexFaces => $arm!(vertex_faces vertices Vertex Face),
+            $crate::Relation::EdgeVertices => $arm!(edge_vertices edges Edge Vertex),
+            $crate::Relation::EdgeEdges => $arm!(edge_edges edges Edge Edge),
+            $crate::Relation::EdgeFaces => $arm!(edge_faces edges Edge Face),
+            $crate::Relation::FaceVertices => $arm!(face_vertices faces Face Vertex),
+            $crate::Relation::FaceEdges => $arm!(face_edges faces Face Edge),
+            $crate::Relation::FaceFaces => $arm!(face_faces faces Face Face),
+        }
+    };
+}
+
 crate::named! {
     /// How much of a mesh one query reads.
     pub enum QueryCost: "cost" {

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use sixfold::Relation;
+use sixfold_core::EditByName;
 
 use super::source::Sourced;
 use crate::built_mesh::BuiltMesh;
 use crate::edit::EditTrace;
-use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::structure::Structure;
 use crate::sweep::{Swept, swept};
@@ -66,7 +66,7 @@ impl Kept {
     pub(super) fn with_built<T>(
         &mut self,
         structure: &Structure,
-        edits: &[EditCommand],
+        edits: &[EditByName],
         answer: impl FnOnce(&mut EditedMesh) -> Result<T, ExplainError>,
     ) -> Result<T, ExplainError> {
         // The structure is taken out, so that one that panics is not kept.
@@ -91,7 +91,7 @@ impl Kept {
 pub(super) struct EditedMesh {
     mesh: BuiltMesh,
     /// The accepted edits: a refused one changes nothing.
-    edits: Vec<EditCommand>,
+    edits: Vec<EditByName>,
 }
 
 impl EditedMesh {
@@ -107,13 +107,14 @@ impl EditedMesh {
     }
 
     /// Returns whether `edits` begin with the edits that were run.
-    fn has_run_only(&self, edits: &[EditCommand]) -> bool {
+    fn has_run_only(&self, edits: &[EditByName]) -> bool {
+        // As text, because the positions 0 and -0 are equal.
         let mut pairs = edits.iter().zip(&self.edits);
-        edits.len() >= self.edits.len() && pairs.all(|(a, b)| a.is_same(b))
+        edits.len() >= self.edits.len() && pairs.all(|(a, b)| a.to_string() == b.to_string())
     }
 
     /// Runs those of `edits` that were not run yet, up to the first one that is refused.
-    fn run_others(&mut self, edits: &[EditCommand]) -> Result<(), ExplainError> {
+    fn run_others(&mut self, edits: &[EditByName]) -> Result<(), ExplainError> {
         for edit in &edits[self.edits.len()..] {
             self.mesh.apply_accepted(edit)?;
             self.edits.push(edit.clone());
@@ -122,7 +123,7 @@ impl EditedMesh {
     }
 
     /// Runs one more edit, and returns what it does.
-    pub(super) fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
+    pub(super) fn edit(&mut self, edit: &EditByName) -> Result<EditTrace, ExplainError> {
         let trace = self.mesh.edit_briefly(edit, MOST_ENTRIES)?;
         if trace.refusal.is_none() {
             self.edits.push(edit.clone());

@@ -6,10 +6,10 @@ use std::ops::Range;
 use serde::Serialize;
 use sixfold::subdivision::{Extent, Scheme, Step, Subdivision, SubdivisionError, build_level};
 use sixfold::{Creases, FaceVertexMesh, Point, PolygonMesh};
+use sixfold_core::ElementName;
 
 use super::Error;
 use super::source::{check_positions, check_size};
-use crate::element::ElementName;
 
 /// Maximum number of levels. Most meshes reach the maximum number of corners before, but a mesh without
 /// faces does not grow.

@@ -11,7 +11,7 @@ use console::{Key, Term};
 use serde::Serialize;
 use sixfold::PolygonMesh;
 use sixfold_explain::{
-    BuiltMesh, Cost, EditCommand, ElementName, ExplainError, Read, Refused, Step, Trace,
+    BuiltMesh, Cost, EditByName, ElementName, ExplainError, Read, Refused, Step, Trace,
 };
 use sixfold_results::numbers::{counted, grouped};
 
@@ -60,7 +60,7 @@ struct Begun {
     text: TextOutput,
     name: String,
     polygons: PolygonMesh,
-    edits: Vec<EditCommand>,
+    edits: Vec<EditByName>,
 }
 
 impl Begun {

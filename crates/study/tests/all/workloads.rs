@@ -220,7 +220,7 @@ impl<'a> Oracle<'a> {
                 let faces = model.edges().remove(edge).expect("an edge of the model");
                 let corners = faces.iter().filter_map(|&(f, _)| model.face(f)).flatten();
                 let apexes: Vec<usize> = corners.copied().filter(|v| !edge.contains(v)).collect();
-                if let Some(after) = model.after(&Action::FlipEdge { ends: *edge }, &rules) {
+                if let Some(after) = model.after(&Action::FlipEdge { e: *edge }, &rules) {
                     model = after;
                     *edge = [apexes[0].min(apexes[1]), apexes[0].max(apexes[1])];
                 }

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::ops::Range;
 
-use sixfold::{MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId};
+use sixfold::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
 
 use crate::mix::route::Route;
 use crate::operation::ElementKind;
@@ -54,35 +54,25 @@ impl<M: MeshQuery> RouteHandles<M> {
     pub(crate) fn run_action(&self, mesh: &M, action: Action, range: Range<u64>) -> u64 {
         let (v, e, f) = (&self.vertices, &self.edges, &self.faces);
         match action {
-            Action::Relation(relation) => match relation {
-                Relation::VertexVertices => {
-                    count_results(v, range, |s, v| s.consume(mesh.vertex_vertices(v)))
+            Action::Relation(relation) => {
+                // Each loop is a function of its own, as in `sweeps::query_relation`.
+                macro_rules! run_relation {
+                    ($query:ident $list:ident $from:ident $to:ident) => {{
+                        #[inline(never)]
+                        fn $query<M: MeshQuery>(
+                            mesh: &M,
+                            elements: &[M::$from],
+                            range: Range<u64>,
+                        ) -> u64 {
+                            count_results(elements, range, |sink, element| {
+                                sink.consume(mesh.$query(element));
+                            })
+                        }
+                        $query(mesh, &self.$list, range)
+                    }};
                 }
-                Relation::VertexEdges => {
-                    count_results(v, range, |s, v| s.consume(mesh.vertex_edges(v)))
-                }
-                Relation::VertexFaces => {
-                    count_results(v, range, |s, v| s.consume(mesh.vertex_faces(v)))
-                }
-                Relation::EdgeVertices => {
-                    count_results(e, range, |s, e| s.consume(mesh.edge_vertices(e)))
-                }
-                Relation::EdgeEdges => {
-                    count_results(e, range, |s, e| s.consume(mesh.edge_edges(e)))
-                }
-                Relation::EdgeFaces => {
-                    count_results(e, range, |s, e| s.consume(mesh.edge_faces(e)))
-                }
-                Relation::FaceVertices => {
-                    count_results(f, range, |s, f| s.consume(mesh.face_vertices(f)))
-                }
-                Relation::FaceEdges => {
-                    count_results(f, range, |s, f| s.consume(mesh.face_edges(f)))
-                }
-                Relation::FaceFaces => {
-                    count_results(f, range, |s, f| s.consume(mesh.face_faces(f)))
-                }
-            },
+                sixfold_core::match_relation!(relation, run_relation!)
+            }
             Action::Position => sum_positions(v, range, |sum, v| {
                 *sum += mesh.position(v);
                 1

@@ -7,10 +7,11 @@ use std::ops::Range;
 use sixfold::{
     BuildError, Edit, FaceId, MeshEdit, Point, PolygonMesh, QueryCost, Relation, Representation,
 };
+use sixfold_core::EditOf;
 
 use crate::backend::Backend;
 use crate::draw::Draw;
-use crate::edit_place::{EditPlace, apply_edit, prepare_place};
+use crate::edit_place::prepare_edit;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::places::{EditPlaceError, EditPlaces};
@@ -106,8 +107,14 @@ pub(crate) fn prepare_edit_mix<'a, M: Representation + MeshEdit + 'static>(
 
 trait WriteAccess<M: Representation> {
     fn set_position(mesh: &mut M, v: M::Vertex, to: Point);
-    fn prepare_place(mesh: &mut M, edit: Edit, place: &mut EditPlace<M>) -> bool;
-    fn apply_edit(mesh: &mut M, edit: Edit, place: &EditPlace<M>) -> bool;
+    /// Prepares the mesh for an edit at a face; `None` if this is not possible.
+    fn prepare_edit(
+        mesh: &mut M,
+        polygons: &PolygonMesh,
+        edit: Edit,
+        f: FaceId,
+    ) -> Option<EditOf<M>>;
+    fn apply_edit(mesh: &mut M, call: &EditOf<M>) -> bool;
     /// Returns whether an edit visits all faces of the mesh.
     fn scans(edit: Edit) -> bool;
 }
@@ -117,10 +124,10 @@ struct ReadOnly;
 
 impl<M: Representation> WriteAccess<M> for ReadOnly {
     fn set_position(_: &mut M, _: M::Vertex, _: Point) {}
-    fn prepare_place(_: &mut M, _: Edit, _: &mut EditPlace<M>) -> bool {
-        false
+    fn prepare_edit(_: &mut M, _: &PolygonMesh, _: Edit, _: FaceId) -> Option<EditOf<M>> {
+        None
     }
-    fn apply_edit(_: &mut M, _: Edit, _: &EditPlace<M>) -> bool {
+    fn apply_edit(_: &mut M, _: &EditOf<M>) -> bool {
         false
     }
     fn scans(_: Edit) -> bool {
@@ -136,12 +143,17 @@ impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
         // Write the current position: no structure refuses it, and the mesh does not change.
         let _ = black_box(mesh.set_position(v, to).is_ok());
     }
-    fn prepare_place(mesh: &mut M, edit: Edit, place: &mut EditPlace<M>) -> bool {
-        prepare_place(mesh, edit, place).is_ok()
+    fn prepare_edit(
+        mesh: &mut M,
+        polygons: &PolygonMesh,
+        edit: Edit,
+        f: FaceId,
+    ) -> Option<EditOf<M>> {
+        prepare_edit(mesh, polygons, edit, f).ok()
     }
     #[inline(always)]
-    fn apply_edit(mesh: &mut M, edit: Edit, place: &EditPlace<M>) -> bool {
-        apply_edit(mesh, edit, place).is_ok()
+    fn apply_edit(mesh: &mut M, call: &EditOf<M>) -> bool {
+        call.apply(mesh, &mut ()).is_ok()
     }
     fn scans(edit: Edit) -> bool {
         M::EDITS[edit as usize] == Some(QueryCost::Scan)
@@ -154,19 +166,16 @@ struct Work<'a, M: Representation, W> {
     handles: RouteHandles<M>,
     own_memory: OwnMemory,
     faces: EditPlaces,
-    /// For each edit of the schedule, its places on a mesh prepared for the edits.
-    places: Vec<Vec<EditPlace<M>>>,
+    /// For each edit of the schedule, the edits at its places on a mesh prepared for them.
+    calls: Vec<Vec<EditOf<M>>>,
     write_access: PhantomData<W>,
 }
 
 impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
-    /// Returns the edit of `part` with its places; `None` if `part` is not an edit.
-    fn edit(&self, part: usize) -> Option<(Edit, &[EditPlace<M>])> {
+    /// Returns the edits of `part`; `None` if `part` is not an edit.
+    fn edits(&self, part: usize) -> Option<&[EditOf<M>]> {
         let nth = self.schedule.edits().position(|other| other == part)?;
-        match self.schedule.parts[part].action {
-            Action::Edit(edit) => Some((edit, self.places.get(nth)?)),
-            _ => None,
-        }
+        self.calls.get(nth).map(Vec::as_slice)
     }
 
     /// Runs the operations `range` of one part on `mesh`. If the part is an edit, `range` contains
@@ -186,14 +195,12 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
                 [operations, operations, 0]
             }
             Action::Edit(_) => {
-                let Some((edit, places)) = self.edit(part) else {
+                let Some(calls) = self.edits(part) else {
                     return [0; 3];
                 };
                 let range = range.start as usize..range.end as usize;
-                let some = places.get(range).unwrap_or(&[]);
-                let refused = some
-                    .iter()
-                    .filter(|place| !W::apply_edit(mesh, edit, place));
+                let some = calls.get(range).unwrap_or(&[]);
+                let refused = some.iter().filter(|call| !W::apply_edit(mesh, call));
                 let refused = refused.count() as u64;
                 let done = some.len() as u64 - refused;
                 [some.len() as u64, done, refused]
@@ -233,7 +240,7 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
     fn turns_per_copy(&self) -> u64 {
         let fits = |turns: &u64| {
             self.schedule.edits().all(|part| {
-                let places = self.edit(part).map_or(0, |(_, places)| places.len());
+                let places = self.edits(part).map_or(0, <[_]>::len);
                 self.schedule.operations_within(part, *turns) <= places as u64
             })
         };
@@ -283,7 +290,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
                 input.schedule.edges,
             ),
             faces,
-            places: Vec::new(),
+            calls: Vec::new(),
             write_access: PhantomData,
         };
         let mut mix = Self {
@@ -311,22 +318,18 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
                 Action::Edit(edit) => Some(edit),
                 _ => None,
             });
-        let places = edits
-            .clone()
-            .zip(&self.work.faces.by_edit)
-            .map(|(edit, faces)| {
-                let place = |&f: &FaceId| EditPlace::new(&mesh, self.polygons, edit, f);
-                faces.iter().map(place).collect()
-            });
-        let mut places: Vec<Vec<EditPlace<M>>> = places.collect();
-        let is_prepared = edits.zip(&mut places).map(|(edit, places)| {
-            let places = places.iter_mut();
-            places
-                .map(|place| W::prepare_place(&mut mesh, edit, place))
-                .collect()
+        let calls = edits.zip(&self.work.faces.by_edit).map(|(edit, faces)| {
+            let mut prepare = |&f: &FaceId| W::prepare_edit(&mut mesh, self.polygons, edit, f);
+            faces.iter().map(&mut prepare).collect()
         });
+        let calls: Vec<Vec<Option<EditOf<M>>>> = calls.collect();
+        let is_prepared = calls.iter();
+        let is_prepared = is_prepared.map(|calls| calls.iter().map(Option::is_some).collect());
         let is_prepared = is_prepared.collect();
-        self.work.places = places;
+        let calls = calls.into_iter();
+        self.work.calls = calls
+            .map(|calls| calls.into_iter().flatten().collect())
+            .collect();
         self.prepared = Some(mesh);
         self.copies = ReusedCopies::default();
         is_prepared
@@ -374,7 +377,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
     /// Runs one part alone. Edits are done at the first places of restored copies; their result is
     /// the number of accepted edits on a copy.
     fn run_part(&mut self, part: usize, first: u64, series: &Series<'_>) -> Run {
-        let Some((_, places)) = self.work.edit(part) else {
+        let Some(places) = self.work.edits(part) else {
             let work = &self.work;
             let mesh = black_box(&mut self.timed.mesh);
             let scans = work.scans(&work.schedule.parts[part]);
@@ -481,11 +484,11 @@ impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix
             return accepted;
         };
         for (part, accepted) in self.work.schedule.edits().zip(&mut accepted) {
-            let Some((edit, places)) = self.work.edit(part) else {
-                continue;
-            };
-            for (place, accepted) in places.iter().zip(accepted) {
-                *accepted = *accepted && W::apply_edit(&mut mesh, edit, place);
+            // A place that could not be prepared has no edit.
+            let prepared = accepted.iter_mut().filter(|accepted| **accepted);
+            let calls = self.work.edits(part).unwrap_or(&[]);
+            for (call, accepted) in calls.iter().zip(prepared) {
+                *accepted = W::apply_edit(&mut mesh, call);
             }
         }
         accepted

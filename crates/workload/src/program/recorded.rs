@@ -1,6 +1,7 @@
 //! A structure that counts what a program asks.
 
 use std::cmp::Reverse;
+use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -8,12 +9,13 @@ use super::tape::{Tape, TapeState, TapedRun, Watched};
 use sixfold_results::AskedCount;
 
 use crate::operation::ElementKind;
-use crate::trace::{EditCall, NONE, Trace, affected_faces};
+use crate::trace::{Trace, TracedEdit};
 use sixfold::{
     BuildError, Capabilities, Edit, EditLog, EditRecord, FaceId, Handle, InvariantError,
     MemoryFootprint, MeshEdit, MeshMove, MeshQuery, MoveError, OrientedWalk, Point, PolygonMesh,
     QueryCost, Refusal, Relation, Representation, VertexId, VertexMap,
 };
+use sixfold_core::{EditCall, EditOf};
 
 /// How often a program asks each relation, reads positions and edits, in one run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -133,14 +135,14 @@ macro_rules! counted {
         })+
     };
     (name vertex $mesh:ident, $of:ident) => {
-        |tape: &mut TapeState<M::Vertex, M::Face>| [tape.names.vertex_number($of), 0]
+        |tape: &mut TapeState<M::Vertex, M::Face>| tape.vertex_name($of)
     };
     (name face $mesh:ident, $of:ident) => {
-        |tape: &mut TapeState<M::Vertex, M::Face>| [tape.names.face_number($of), 0]
+        |tape: &mut TapeState<M::Vertex, M::Face>| tape.face_name($of)
     };
     (name edge $mesh:ident, $of:ident) => {
         |tape: &mut TapeState<M::Vertex, M::Face>| {
-            tape.names.edge_name($mesh.mesh.edge_vertices($of))
+            tape.edge_name($mesh.mesh.edge_vertices($of))
         }
     };
     (note vertex $relation:ident) => {
@@ -161,13 +163,13 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
     fn vertices(&self) -> impl Iterator<Item = M::Vertex> {
         let vertices = self.mesh.vertices();
         Watched::list(vertices, self.tape.as_ref(), ElementKind::Vertex)
-            .noting(|tape, &v| tape.item([tape.names.vertex_number(v), 0]))
+            .noting(|tape, &v| tape.item(tape.vertex_name(v)))
     }
 
     fn edges(&self) -> impl Iterator<Item = M::Edge> {
         let edges = self.mesh.edges();
         Watched::list(edges, self.tape.as_ref(), ElementKind::Edge).noting(|tape, &e| {
-            let name = tape.names.edge_name(self.mesh.edge_vertices(e));
+            let name = tape.edge_name(self.mesh.edge_vertices(e));
             tape.item(name);
         })
     }
@@ -175,7 +177,7 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
     fn faces(&self) -> impl Iterator<Item = M::Face> {
         let faces = self.mesh.faces();
         Watched::list(faces, self.tape.as_ref(), ElementKind::Face)
-            .noting(|tape, &f| tape.item([tape.names.face_number(f), 0]))
+            .noting(|tape, &f| tape.item(tape.face_name(f)))
     }
 
     fn vertex_count(&self) -> usize {
@@ -214,7 +216,7 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
         let ends = self.asks(relation).edge_vertices(e);
         if let Some(tape) = &self.tape {
             let mut tape = tape.lock();
-            let name = tape.names.edge_name(ends);
+            let name = tape.edge_name(ends);
             tape.query(relation, name);
             for v in ends {
                 tape.yielded(relation, v);
@@ -355,73 +357,72 @@ impl<M: MeshQuery, L: EditLog<Recorded<M>>> EditLog<M> for BothLogs<'_, L, M> {
     sixfold_core::pass_reports_on!(0, 1);
 }
 
-/// The handles of the arguments of an edit.
-struct Arguments<'a, M: MeshQuery> {
-    edge: Option<M::Edge>,
-    face: Option<M::Face>,
-    vertices: &'a [Option<M::Vertex>],
-    at: Option<Point>,
-}
-
 impl<M: MeshEdit> Recorded<M> {
-    /// Counts an edit, does it by `edit`, and puts it on the tape. `is_refused` reads the result.
+    /// Counts an edit, does it by `run`, and puts it on the tape. `is_refused` reads the result.
     fn record_edit<L: EditLog<Self>, T>(
         &mut self,
-        kind: Edit,
-        arguments: &Arguments<'_, M>,
+        edit: &EditOf<M>,
+        tape: &Tape<M::Vertex, M::Face>,
         log: &mut L,
-        edit: impl FnOnce(&mut M, &mut BothLogs<'_, L, M>) -> T,
+        run: impl FnOnce(&mut M, &mut BothLogs<'_, L, M>) -> T,
         is_refused: impl FnOnce(&T) -> bool,
     ) -> T {
+        let state = tape.lock();
+        let vertex = |&v: &M::Vertex| Ok::<_, Infallible>(state.vertex_name(v)[0]);
+        let edge = |&e: &M::Edge| Ok(state.edge_name(self.mesh.edge_vertices(e)));
+        let Ok(call) = edit.try_map(vertex, edge, |&f| Ok(state.face_name(f)[0]));
+        let cut = state.names.faces_before(&self.mesh, edit);
+        drop(state);
         let mut record = EditRecord::new();
-        let tape = self.tape.clone();
-        let mut call = EditCall::new(kind);
-        let mut affected = Vec::new();
-        if let Some(tape) = &tape {
-            let names = &tape.lock().names;
-            affected = affected_faces(&self.mesh, names, arguments.edge, arguments.face);
-            if let Some(e) = arguments.edge {
-                call.vertices
-                    .extend(names.edge_name(self.mesh.edge_vertices(e)));
-            }
-            let number = |v: &Option<M::Vertex>| v.map_or(NONE, |v| names.vertex_number(v));
-            call.vertices.extend(arguments.vertices.iter().map(number));
-            call.face = arguments.face.map(|f| names.face_number(f));
-            call.at = arguments.at;
+        let done = run(self.edits(edit.edit()), &mut BothLogs(log, &mut record));
+        let refused = is_refused(&done);
+        let mut state = tape.lock();
+        if !refused {
+            state.names.follow(&self.mesh, &record, &cut);
         }
-        let done = edit(self.edits(kind), &mut BothLogs(log, &mut record));
-        if let Some(tape) = &tape {
-            let mut tape = tape.lock();
-            call.refused = is_refused(&done);
-            if !call.refused {
-                tape.names.follow(&self.mesh, &record, &affected);
-            }
-            tape.edit(call);
-        }
+        let call = call.map_position(Some);
+        state.edit(TracedEdit { call, refused });
         done
     }
 }
 
-/// Passes edits on, and counts them. The groups of arguments are those of [`Arguments`].
+/// The parts of a method of `MeshEdit`, by the kinds of its arguments and of its result.
+macro_rules! edit_method {
+    (type vertex) => { M::Vertex };
+    (type vertex_if_any) => { Option<M::Vertex> };
+    (type vertices) => { &[M::Vertex] };
+    (type corners) => { [M::Vertex; 2] };
+    (type edge) => { M::Edge };
+    (type face) => { M::Face };
+    (type position) => { Point };
+    (type new_position) => { Point };
+    (owned vertices $a:ident) => { $a.to_vec() };
+    (owned $kind:ident $a:ident) => { $a };
+    (result vertex) => { Result<M::Vertex, Refusal<Self>> };
+    (result edge) => { Result<M::Edge, Refusal<Self>> };
+    (result face) => { Result<M::Face, Refusal<Self>> };
+    (result nothing) => { Result<(), Refusal<Self>> };
+    (result count) => { usize };
+    (result unit) => { () };
+    (refused count) => { |_| false };
+    (refused unit) => { |_| false };
+    (refused $result:ident) => { Result::is_err };
+}
+
+/// Passes edits on, and counts them.
 macro_rules! counted_edits {
-    ($($edit:ident $method:ident($($argument:ident: $kind:ty),*)
-        [$edge:expr, $face:expr, $vertices:expr, $at:expr] -> $outcome:ty, $is_refused:expr;)+) => {
+    ($($edit:ident $name:literal $method:ident($($a:ident: $kind:ident $type:ty),*) -> $result:ident;)+) => {
         $(fn $method(
             &mut self,
-            $($argument: $kind,)*
+            $($a: edit_method!(type $kind),)*
             log: &mut impl EditLog<Self>,
-        ) -> $outcome {
-            if self.tape.is_none() {
-                return self.edits(Edit::$edit).$method($($argument,)* &mut PassedOn(log));
-            }
-            let arguments = Arguments::<M> {
-                edge: $edge,
-                face: $face,
-                vertices: &$vertices,
-                at: $at,
+        ) -> edit_method!(result $result) {
+            let Some(tape) = self.tape.clone() else {
+                return self.edits(Edit::$edit).$method($($a,)* &mut PassedOn(log));
             };
-            let edit = |mesh: &mut M, log: &mut BothLogs<'_, _, M>| mesh.$method($($argument,)* log);
-            self.record_edit(Edit::$edit, &arguments, log, edit, $is_refused)
+            let edit = EditCall::$edit { $($a: edit_method!(owned $kind $a)),* };
+            let run = |mesh: &mut M, log: &mut BothLogs<'_, _, M>| mesh.$method($($a,)* log);
+            self.record_edit(&edit, &tape, log, run, edit_method!(refused $result))
         })+
     };
 }
@@ -447,41 +448,7 @@ impl<M: MeshEdit> MeshEdit for Recorded<M> {
         }
     }
 
-    counted_edits! {
-        SetPosition set_position_logged(v: M::Vertex, to: Point)
-            [None, None, [Some(v)], Some(to)] -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        AddVertex add_vertex_logged(at: Point)
-            [None, None, [], Some(at)] -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        AddFace add_face_logged(corners: &[M::Vertex])
-            [None, None, corners.iter().map(|&v| Some(v)).collect::<Vec<_>>(), None]
-            -> Result<M::Face, Refusal<Self>>, Result::is_err;
-        RemoveFace remove_face_logged(f: M::Face)
-            [None, Some(f), [], None] -> Result<(), Refusal<Self>>, Result::is_err;
-        RemoveVertex remove_vertex_logged(v: M::Vertex)
-            [None, None, [Some(v)], None] -> Result<(), Refusal<Self>>, Result::is_err;
-        RemoveIsolatedVertices remove_isolated_vertices_logged()
-            [None, None, [], None] -> usize, |_| false;
-        SplitEdge split_edge_logged(e: M::Edge, at: Point)
-            [Some(e), None, [], Some(at)] -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        BisectEdge bisect_edge_logged(e: M::Edge, at: Point)
-            [Some(e), None, [], Some(at)] -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        PokeFace poke_face_logged(f: M::Face, at: Point)
-            [None, Some(f), [], Some(at)] -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        SplitFace split_face_logged(f: M::Face, ends: [M::Vertex; 2])
-            [None, Some(f), ends.map(Some), None] -> Result<M::Edge, Refusal<Self>>, Result::is_err;
-        DissolveEdge dissolve_edge_logged(e: M::Edge)
-            [Some(e), None, [], None] -> Result<M::Face, Refusal<Self>>, Result::is_err;
-        FlipEdge flip_edge_logged(e: M::Edge)
-            [Some(e), None, [], None] -> Result<M::Edge, Refusal<Self>>, Result::is_err;
-        CollapseEdge collapse_edge_logged(e: M::Edge, keep: M::Vertex, to: Point)
-            [Some(e), None, [Some(keep)], Some(to)]
-            -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        SplitVertex split_vertex_logged(
-            v: M::Vertex, left: Option<M::Vertex>, right: Option<M::Vertex>, at: Point
-        ) [None, None, [Some(v), left, right], Some(at)]
-            -> Result<M::Vertex, Refusal<Self>>, Result::is_err;
-        Compact compact_logged() [None, None, [], None] -> (), |_| false;
-    }
+    sixfold_core::for_each_edit!(counted_edits! {});
 }
 
 #[cfg(test)]

@@ -4,9 +4,10 @@ use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use sixfold::{Handle, PolygonMesh, Relation, Representation};
+use sixfold_core::ElementNames;
 
 use crate::operation::ElementKind;
-use crate::trace::{ALL, Call, EditCall, Names, Op, Trace};
+use crate::trace::{ALL, Call, NONE, Op, Trace, TracedEdit};
 
 /// The greatest number of calls that are kept: 256 MB.
 const MAX_CALLS: usize = 1 << 24;
@@ -18,9 +19,9 @@ const MAX_RECENT: usize = 16;
 pub(super) struct Tape<V: Handle, F: Handle>(Arc<Mutex<TapeState<V, F>>>);
 
 pub(super) struct TapeState<V: Handle, F: Handle> {
-    pub(super) names: Names<V, F>,
+    pub(super) names: ElementNames<V, F>,
     calls: Vec<Call>,
-    edits: Vec<EditCall>,
+    edits: Vec<TracedEdit>,
     /// False after more calls than are kept.
     complete: bool,
     /// The relation that was queried last, if its results are vertices, with its last results.
@@ -62,7 +63,7 @@ impl<V: Handle, F: Handle> Tape<V, F> {
         M: Representation<Vertex = V, Face = F>,
     {
         Self(Arc::new(Mutex::new(TapeState {
-            names: Names::new::<M>(polygons),
+            names: ElementNames::new::<M>(polygons),
             calls: Vec::new(),
             edits: Vec::new(),
             complete: true,
@@ -108,6 +109,18 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
         self.calls.len() - 1
     }
 
+    pub(super) fn vertex_name(&self, v: V) -> [u32; 2] {
+        [self.names.vertex_number(v).unwrap_or(NONE), 0]
+    }
+
+    pub(super) fn edge_name(&self, ends: [V; 2]) -> [u32; 2] {
+        self.names.edge_numbers(ends).unwrap_or([NONE; 2])
+    }
+
+    pub(super) fn face_name(&self, f: F) -> [u32; 2] {
+        [self.names.face_number(f).unwrap_or(NONE), 0]
+    }
+
     pub(super) fn query(&mut self, relation: Relation, name: [u32; 2]) -> usize {
         self.recent = None;
         if matches!(
@@ -139,7 +152,7 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
             self.positions_of[*relation as usize] += 1;
             self.of_results.push(self.calls.len());
         }
-        let name = [self.names.vertex_number(v), 0];
+        let name = self.vertex_name(v);
         self.push(Op::Position, name);
     }
 
@@ -147,9 +160,9 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
         self.push(Op::SetPositions, [0; 2]);
     }
 
-    pub(super) fn edit(&mut self, call: EditCall) {
+    pub(super) fn edit(&mut self, edit: TracedEdit) {
         self.push(Op::Edit, [self.edits.len() as u32, 0]);
-        self.edits.push(call);
+        self.edits.push(edit);
     }
 }
 

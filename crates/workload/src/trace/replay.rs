@@ -6,11 +6,11 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use sixfold::{
-    Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation,
-    VertexMap,
+    Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Representation, VertexMap,
 };
+use sixfold_core::{EditOf, ElementNames};
 
-use super::{ALL, Argument, Call, EditCall, NONE, Names, Op, Trace, arguments};
+use super::{ALL, Call, Op, Trace, TracedEdit};
 use crate::job::Outcome;
 use crate::operation::ElementKind;
 use crate::program::Form;
@@ -34,19 +34,10 @@ pub(crate) struct Replay<M: MeshQuery> {
     vertices: Vec<M::Vertex>,
     edges: Vec<M::Edge>,
     faces: Vec<M::Face>,
-    edits: Vec<EditHandles<M>>,
+    edits: Vec<EditOf<M>>,
     /// The positions that [`Op::SetPositions`] writes: those of the mesh.
     positions: Option<VertexMap<M, Point>>,
     calls: u64,
-}
-
-/// The arguments of an edit.
-struct EditHandles<M: MeshQuery> {
-    edit: Edit,
-    vertices: Vec<Option<M::Vertex>>,
-    edge: Option<M::Edge>,
-    face: Option<M::Face>,
-    at: Point,
 }
 
 /// The next position in a trace, for messages.
@@ -132,7 +123,7 @@ impl<M: MeshQuery> Replay<M> {
         &mut self,
         nth: usize,
         call: Call,
-        names: &Names<V, F>,
+        names: &ElementNames<V, F>,
         edge: impl FnOnce([u32; 2]) -> Option<M::Edge>,
     ) -> Result<(), String>
     where
@@ -170,7 +161,7 @@ impl<M: MeshQuery> Replay<M> {
     fn run(
         &self,
         mesh: &mut M,
-        mut edit: impl FnMut(&mut M, &EditHandles<M>),
+        mut edit: impl FnMut(&mut M, &EditOf<M>),
         mut set_positions: impl FnMut(&mut M, &VertexMap<M, Point>),
     ) -> Outcome {
         let mut sink = Sink::default();
@@ -190,17 +181,14 @@ impl<M: MeshQuery> Replay<M> {
         for group in &self.groups {
             let taken = group.taken as usize;
             match group.op {
-                Op::Query(relation) => match relation {
-                    Relation::VertexVertices => query!(vertices, vertex_vertices, group),
-                    Relation::VertexEdges => query!(vertices, vertex_edges, group),
-                    Relation::VertexFaces => query!(vertices, vertex_faces, group),
-                    Relation::EdgeVertices => query!(edges, edge_vertices, group),
-                    Relation::EdgeEdges => query!(edges, edge_edges, group),
-                    Relation::EdgeFaces => query!(edges, edge_faces, group),
-                    Relation::FaceVertices => query!(faces, face_vertices, group),
-                    Relation::FaceEdges => query!(faces, face_edges, group),
-                    Relation::FaceFaces => query!(faces, face_faces, group),
-                },
+                Op::Query(relation) => {
+                    macro_rules! query_group {
+                        ($query:ident $list:ident $from:ident $to:ident) => {
+                            query!($list, $query, group)
+                        };
+                    }
+                    sixfold_core::match_relation!(relation, query_group!);
+                }
                 Op::Position => {
                     for &v in &self.vertices[group.range.clone()] {
                         sum += mesh.position(v);
@@ -211,8 +199,8 @@ impl<M: MeshQuery> Replay<M> {
                 Op::List(ElementKind::Edge) => sink.consume(mesh.edges().take(taken)),
                 Op::List(ElementKind::Face) => sink.consume(mesh.faces().take(taken)),
                 Op::Edit => {
-                    for handles in &self.edits[group.range.clone()] {
-                        edit(mesh, handles);
+                    for call in &self.edits[group.range.clone()] {
+                        edit(mesh, call);
                     }
                 }
                 Op::SetPositions => {
@@ -239,7 +227,7 @@ fn translate<M: Representation>(
     let translation = Translation {
         trace,
         mesh,
-        names: &Names::new::<M>(polygons),
+        names: &ElementNames::new::<M>(polygons),
         ends: ends_of_lists(&trace.calls),
     };
     let is_edge = |call: &Call| match call.op {
@@ -249,8 +237,8 @@ fn translate<M: Representation>(
     };
     let names_edges = trace.calls.iter().any(is_edge);
     let edges = mesh.edges().filter(|_| names_edges);
-    let named = |e| (translation.names.edge_name(mesh.edge_vertices(e)), e);
-    let edges: HashMap<[u32; 2], M::Edge> = edges.map(named).collect();
+    let named = |e| Some((translation.names.edge_numbers(mesh.edge_vertices(e))?, e));
+    let edges: HashMap<[u32; 2], M::Edge> = edges.filter_map(named).collect();
     let mut replay = Replay::new();
     translation.add(&mut replay, &edges, 0..trace.calls.len())?;
     if trace.calls.iter().any(|call| call.op == Op::SetPositions) {
@@ -285,7 +273,7 @@ pub(super) fn handles<M: Representation>(
 struct Translation<'t, M: MeshQuery> {
     trace: &'t Trace,
     mesh: &'t M,
-    names: &'t Names<M::Vertex, M::Face>,
+    names: &'t ElementNames<M::Vertex, M::Face>,
     /// For each call that starts a list, the call that ends it.
     ends: HashMap<usize, usize>,
 }
@@ -357,15 +345,15 @@ impl<M: MeshQuery> Translation<'_, M> {
         let names: Box<dyn Iterator<Item = [u32; 2]> + '_> = match kind {
             ElementKind::Vertex => {
                 let names = self.mesh.vertices();
-                Box::new(names.map(|v| [self.names.vertex_number(v), 0]))
+                Box::new(names.filter_map(|v| Some([self.names.vertex_number(v)?, 0])))
             }
             ElementKind::Edge => {
                 let ends = self.mesh.edges().map(|e| self.mesh.edge_vertices(e));
-                Box::new(ends.map(|ends| self.names.edge_name(ends)))
+                Box::new(ends.filter_map(|ends| self.names.edge_numbers(ends)))
             }
             ElementKind::Face => {
                 let names = self.mesh.faces();
-                Box::new(names.map(|f| [self.names.face_number(f), 0]))
+                Box::new(names.filter_map(|f| Some([self.names.face_number(f)?, 0])))
             }
         };
         for name in names {
@@ -413,15 +401,15 @@ fn translate_edits<M: Representation + MeshEdit>(
     polygons: &PolygonMesh,
 ) -> Result<Replay<M>, String> {
     trace.check(polygons, &M::COSTS)?;
-    let scans = trace.edits.iter().filter(|call| {
-        let cost = M::EDITS[call.edit as usize];
-        cost == Some(QueryCost::Scan) && call.edit != Edit::Compact
+    let scans = trace.edits.iter().filter(|edit| {
+        let edit = edit.call.edit();
+        M::EDITS[edit as usize] == Some(QueryCost::Scan) && edit != Edit::Compact
     });
     if scans.count() as u64 * polygons.face_count() as u64 > MAX_SCANNED {
         return Err("the edits of the trace scan all faces: a run would take too long".into());
     }
     let mut mesh = mesh.clone();
-    let mut names = Names::new::<M>(polygons);
+    let mut names = ElementNames::new::<M>(polygons);
     let mut replay = Replay::new();
     for (nth, &call) in trace.calls.iter().enumerate() {
         match call.op {
@@ -433,141 +421,35 @@ fn translate_edits<M: Representation + MeshEdit>(
                 replay.push_query(nth, call, &names, edge)?;
             }
             Op::Edit => {
-                let edit = &trace.edits[call.name[0] as usize];
-                let handles = edit_handles(nth, edit, &mesh, &names)?;
-                let affected = affected_faces(&mesh, &names, handles.edge, handles.face);
+                let TracedEdit {
+                    call: named,
+                    refused,
+                } = &trace.edits[call.name[0] as usize];
+                let edit = named.find(&mesh, &names);
+                let edit = edit.map_err(|name| missing(nth, &format!("{} {name}", name.kind())))?;
+                let cut = names.faces_before(&mesh, &edit);
                 let mut record = EditRecord::new();
-                let refusal = apply(&mut mesh, &handles, &mut record);
-                if refusal.is_some() != edit.refused {
+                let refusal = edit.apply(&mut mesh, &mut record).err();
+                if refusal.is_some() != *refused {
                     let done = |refused| if refused { "refused" } else { "done" };
                     let because = refusal.map_or_else(String::new, |reason| format!(" ({reason})"));
                     return Err(format!(
                         "{}: {} was {} in the recorded run, but is {} here{because}",
                         at(nth),
-                        edit.edit.name(),
-                        done(edit.refused),
-                        done(!edit.refused)
+                        edit.edit(),
+                        done(*refused),
+                        done(!*refused)
                     ));
                 }
-                if !edit.refused {
-                    names.follow(&mesh, &record, &affected);
+                if !refused {
+                    names.follow(&mesh, &record, &cut);
                 }
-                replay.edits.push(handles);
+                replay.edits.push(edit);
                 replay.push(Op::Edit, ALL, replay.edits.len() - 1);
             }
         }
     }
     Ok(replay)
-}
-
-/// Returns the numbers of the faces that an edit at an edge or at a face cuts or merges.
-pub(crate) fn affected_faces<M: MeshQuery>(
-    mesh: &M,
-    names: &Names<M::Vertex, M::Face>,
-    edge: Option<M::Edge>,
-    face: Option<M::Face>,
-) -> Vec<u32> {
-    let at_edge = edge.into_iter().flat_map(|e| mesh.edge_faces(e));
-    let faces = at_edge.chain(face);
-    faces.map(|f| names.face_number(f)).collect()
-}
-
-fn edit_handles<M: MeshEdit>(
-    nth: usize,
-    call: &EditCall,
-    mesh: &M,
-    names: &Names<M::Vertex, M::Face>,
-) -> Result<EditHandles<M>, String> {
-    let vertex = |&number: &u32| match number {
-        NONE => Ok(None),
-        number => {
-            let v = names.vertex(number);
-            let v = v.ok_or_else(|| missing(nth, &format!("vertex {number}")))?;
-            Ok(Some(v))
-        }
-    };
-    let vertices: Vec<Option<M::Vertex>> = call
-        .vertices
-        .iter()
-        .map(vertex)
-        .collect::<Result<_, String>>()?;
-    let face = match call.face {
-        None => None,
-        Some(number) => {
-            let f = names.face(number);
-            Some(f.ok_or_else(|| missing(nth, &format!("face {number}")))?)
-        }
-    };
-    let edge = match (
-        arguments(call.edit).contains(&Argument::Edge),
-        &vertices[..],
-    ) {
-        (true, &[Some(a), Some(b), ..]) => {
-            let e = mesh.edge_between(a, b);
-            let [a, b] = [call.vertices[0], call.vertices[1]];
-            Some(e.ok_or_else(|| missing(nth, &format!("edge {a}-{b}")))?)
-        }
-        _ => None,
-    };
-    Ok(EditHandles {
-        edit: call.edit,
-        vertices,
-        edge,
-        face,
-        at: call.at.unwrap_or(Point::ZERO),
-    })
-}
-
-/// Does an edit. Returns the reason if the structure refuses it.
-fn apply<M: MeshEdit>(
-    mesh: &mut M,
-    handles: &EditHandles<M>,
-    log: &mut impl sixfold::EditLog<M>,
-) -> Option<String> {
-    let at = handles.at;
-    let vertex = |i: usize| handles.vertices.get(i).copied().flatten();
-    let refused = |refusal: sixfold::Refusal<M>| refusal.to_string();
-    let missing = || Some("an argument is missing".to_owned());
-    macro_rules! edit {
-        ($method:ident($($argument:expr),*)) => {
-            mesh.$method($($argument,)* log).err().map(refused)
-        };
-    }
-    match (handles.edit, vertex(0), handles.edge, handles.face) {
-        (Edit::SetPosition, Some(v), ..) => edit!(set_position_logged(v, at)),
-        (Edit::AddVertex, ..) => edit!(add_vertex_logged(at)),
-        (Edit::AddFace, ..) => {
-            let corners: Vec<M::Vertex> = handles.vertices.iter().flatten().copied().collect();
-            edit!(add_face_logged(&corners))
-        }
-        (Edit::RemoveFace, _, _, Some(f)) => edit!(remove_face_logged(f)),
-        (Edit::RemoveVertex, Some(v), ..) => edit!(remove_vertex_logged(v)),
-        (Edit::RemoveIsolatedVertices, ..) => {
-            mesh.remove_isolated_vertices_logged(log);
-            None
-        }
-        (Edit::SplitEdge, _, Some(e), _) => edit!(split_edge_logged(e, at)),
-        (Edit::BisectEdge, _, Some(e), _) => edit!(bisect_edge_logged(e, at)),
-        (Edit::PokeFace, _, _, Some(f)) => edit!(poke_face_logged(f, at)),
-        (Edit::SplitFace, Some(a), _, Some(f)) => match vertex(1) {
-            Some(b) => edit!(split_face_logged(f, [a, b])),
-            None => missing(),
-        },
-        (Edit::DissolveEdge, _, Some(e), _) => edit!(dissolve_edge_logged(e)),
-        (Edit::FlipEdge, _, Some(e), _) => edit!(flip_edge_logged(e)),
-        (Edit::CollapseEdge, _, Some(e), _) => match vertex(2) {
-            Some(keep) => edit!(collapse_edge_logged(e, keep, at)),
-            None => missing(),
-        },
-        (Edit::SplitVertex, Some(v), ..) => {
-            edit!(split_vertex_logged(v, vertex(1), vertex(2), at))
-        }
-        (Edit::Compact, ..) => {
-            mesh.compact_logged(log);
-            None
-        }
-        _ => missing(),
-    }
 }
 
 /// Defines a way to run traces on the structure `M` as a type that implements [`Form`].
@@ -614,8 +496,8 @@ replay_form! {
 replay_form! {
     /// Runs a trace with edits.
     EditReplay on Representation, MeshEdit; changes mesh: true;
-    set up: translate_edits; edit: |mesh, handles| {
-        black_box(apply(mesh, handles, &mut ()));
+    set up: translate_edits; edit: |mesh, call| {
+        _ = black_box(call.apply(mesh, &mut ()).is_ok());
     };
     set positions: |_, _| ()
 }

@@ -231,7 +231,7 @@ fn traces_are_the_same_after_writing_and_reading() {
 
 #[test]
 fn every_call_is_written_and_read() {
-    let text = "sixfold-trace 1\n\
+    let text = "sixfold-trace 2\n\
         program all calls\n\
         mesh 8 12\n\
         own_ns 12.5\n\
@@ -245,20 +245,20 @@ fn every_call_is_written_and_read() {
         end\n\
         position 0 1\n\
         set_positions\n\
-        set_position 3 1 2 3\n\
-        add_vertex 0 0.5 -1e-3\n\
-        add_face 1 2 8\n\
-        remove_face 12\n\
-        remove_vertex 4\n\
+        set_position v3 1,2,3\n\
+        add_vertex 0,0.5,-1e-3\n\
+        add_face v1 v2 v8\n\
+        remove_face f12\n\
+        remove_vertex v4\n\
         remove_isolated_vertices\n\
-        split_edge 1-2 0 0 0\n\
-        bisect_edge 1-2 0 0 0 refused\n\
-        poke_face 3 0 0 0\n\
-        split_face 3 1 2\n\
-        dissolve_edge 1-2\n\
-        flip_edge 1-2\n\
-        collapse_edge 1-2 2 0 0 0\n\
-        split_vertex 3 - 4 0 0 0\n\
+        split_edge v1-v2 0,0,0\n\
+        bisect_edge v1-v2 0,0,0 refused\n\
+        poke_face f3 0,0,0\n\
+        split_face f3 v1 v2\n\
+        dissolve_edge v1-v2\n\
+        flip_edge v2-v1\n\
+        collapse_edge v1-v2 v2\n\
+        split_vertex v3 none v4 0,0,0\n\
         compact\n\
         calls 22\n";
     let trace = Trace::read("a.trace", text.as_bytes()).expect("all calls");
@@ -276,19 +276,19 @@ fn every_call_is_written_and_read() {
 
 #[test]
 fn wrong_traces_are_refused_with_their_line() {
-    let head = "sixfold-trace 1\nmesh 4 4\n";
+    let head = "sixfold-trace 2\nmesh 4 4\n";
     let cases = [
         ("", 1, "cut off"),
         ("ply\n", 1, "this is not a trace"),
-        ("sixfold-trace 1\nposition 0\n", 2, "must come before"),
-        ("sixfold-trace 1\nmesh 0 4\n", 2, "must have vertices"),
+        ("sixfold-trace 2\nposition 0\n", 2, "must come before"),
+        ("sixfold-trace 2\nmesh 0 4\n", 2, "must have vertices"),
         (
-            "sixfold-trace 1\nmesh 4\n",
+            "sixfold-trace 2\nmesh 4\n",
             2,
             "missing the number of faces",
         ),
         (
-            "sixfold-trace 1\nmesh 99999999999 4\n",
+            "sixfold-trace 2\nmesh 99999999999 4\n",
             2,
             "is not the number",
         ),
@@ -304,10 +304,13 @@ fn wrong_traces_are_refused_with_their_line() {
         ("+end\n", 3, "without a list"),
         ("+list corners\n", 3, "vertices, edges or faces"),
         ("+own_ns inf\n", 3, "finite"),
-        ("+add_vertex 0 0\n", 3, "missing a coordinate"),
-        ("+add_vertex 0 0 nan\n", 3, "not finite"),
-        ("+flip_edge\n", 3, "expected A-B"),
-        ("+flip_edge 1-2 3\n", 3, "too many"),
+        ("+add_vertex 0,0\n", 3, "is not a position"),
+        ("+add_vertex 0,0,nan\n", 3, "is not a position"),
+        ("+flip_edge\n", 3, "write `flip_edge v0-v1`"),
+        ("+flip_edge v1-v2 v3\n", 3, "write `flip_edge v0-v1`"),
+        ("+flip_edge v1-v4\n", 3, "at most 4 vertices"),
+        ("+flip_edge v1-v1\n", 3, "ends of an edge differ"),
+        ("+poke_face f4\n", 3, "at most 4 faces"),
         ("+position 0\n", 3, "cut off"),
         ("+position 0\ncalls 2\n", 4, "has 1 calls"),
         ("+calls 0\n", 3, "no calls"),
@@ -340,7 +343,7 @@ fn traces_of_another_mesh_and_scans_are_refused() {
         let reason = outcome.expect_err(name);
         assert!(reason.contains("35 vertices and 70 faces"), "{reason}");
     }
-    let text = "sixfold-trace 1\nmesh 35 70\nedge_faces 0-20\ncalls 1\n";
+    let text = "sixfold-trace 2\nmesh 35 70\nedge_faces 0-20\ncalls 1\n";
     let trace = Trace::read("a.trace", text.as_bytes()).expect("such vertices exist");
     for (name, outcome) in outcomes(&trace, &torus) {
         let reason = outcome.expect_err(name);
@@ -350,7 +353,7 @@ fn traces_of_another_mesh_and_scans_are_refused() {
         );
     }
     let large = shapes::triangle_torus(100, 100).expect("small");
-    let mut text = String::from("sixfold-trace 1\nmesh 10000 20000\n");
+    let mut text = String::from("sixfold-trace 2\nmesh 10000 20000\n");
     for _ in 0..1100 {
         text += "vertex_faces 0 1 2 3 4 5 6 7 8 9\n";
     }

@@ -2,13 +2,17 @@
 
 use std::io::{self, BufRead, Write};
 
-use sixfold::{Edit, Point, Relation, UnknownName};
+use sixfold::{Edit, Relation, UnknownName};
+use sixfold_core::{EditByName, EditTextError};
 
-use super::{ALL, Argument, Call, EditCall, NONE, Op, Trace, arguments};
+use super::{ALL, Call, Op, Trace, TracedEdit};
 use crate::operation::ElementKind;
 
 /// The first line of a trace.
-const FIRST_LINE: &str = "sixfold-trace 1";
+const FIRST_LINE: &str = "sixfold-trace 2";
+
+/// The last word of an edit that the structure refused.
+const REFUSED: &str = "refused";
 
 /// The greatest number of lists that are open at once.
 const MAX_DEPTH: usize = 64;
@@ -118,7 +122,7 @@ impl Trace {
     /// Reads a trace. Errors contain the file name `file`. O(length of the text).
     ///
     /// ```
-    /// let text = "sixfold-trace 1\nprogram mine\nmesh 4 4\nvertex_faces 0 1 2/1\ncalls 3\n";
+    /// let text = "sixfold-trace 2\nprogram mine\nmesh 4 4\nvertex_faces 0 1 2/1\ncalls 3\n";
     /// let trace = sixfold_workload::Trace::read("a.trace", text.as_bytes())?;
     /// assert_eq!((trace.program.as_str(), trace.len()), ("mine", 3));
     /// # Ok::<(), sixfold_workload::TraceError>(())
@@ -193,41 +197,12 @@ fn write_name(to: &mut dyn Write, kind: ElementKind, [a, b]: [u32; 2]) -> io::Re
     }
 }
 
-fn write_edit(to: &mut dyn Write, call: &EditCall) -> io::Result<()> {
-    write!(to, "{}", call.edit.name())?;
-    let mut vertices = call.vertices.iter();
-    for argument in arguments(call.edit) {
-        match argument {
-            Argument::Edge => {
-                for (v, before) in vertices.by_ref().take(2).zip([' ', '-']) {
-                    write!(to, "{before}{v}")?;
-                }
-            }
-            Argument::Face => call.face.iter().try_for_each(|f| write!(to, " {f}"))?,
-            Argument::Vertex | Argument::VertexIfAny(_) => {
-                write_vertices(to, vertices.by_ref().take(1))?;
-            }
-            Argument::Vertices => write_vertices(to, vertices.by_ref())?,
-            Argument::Position => {
-                (call.at.iter()).try_for_each(|at| write!(to, " {} {} {}", at.x, at.y, at.z))?;
-            }
-        }
-    }
-    match call.refused {
-        true => write!(to, " refused"),
+fn write_edit(to: &mut dyn Write, edit: &TracedEdit) -> io::Result<()> {
+    write!(to, "{}", edit.call)?;
+    match edit.refused {
+        true => write!(to, " {REFUSED}"),
         false => Ok(()),
     }
-}
-
-/// Writes vertices, or `-` for an absent vertex.
-fn write_vertices<'v>(
-    to: &mut dyn Write,
-    mut vertices: impl Iterator<Item = &'v u32>,
-) -> io::Result<()> {
-    vertices.try_for_each(|&v| match v {
-        NONE => write!(to, " -"),
-        v => write!(to, " {v}"),
-    })
 }
 
 /// The state while a trace is read.
@@ -278,7 +253,7 @@ impl Reader {
         if self.vertices == 0 {
             return Err("the line `mesh VERTICES FACES` must come before the calls".into());
         }
-        self.call(word, words)
+        self.call(content, word, words)
     }
 
     fn mesh<'w>(&mut self, mut words: impl Iterator<Item = &'w str>) -> Result<(), String> {
@@ -297,6 +272,7 @@ impl Reader {
 
     fn call<'w>(
         &mut self,
+        line: &str,
         word: &str,
         mut words: impl Iterator<Item = &'w str>,
     ) -> Result<(), String> {
@@ -337,9 +313,7 @@ impl Reader {
                     let kind = ElementKind::queried_by(relation);
                     return self.elements(Op::Query(relation), kind, words);
                 }
-                let edit = word.parse();
-                let unknown = |_| UnknownName::new("call", word, self::words()).to_string();
-                self.edit(edit.map_err(unknown)?, words)
+                self.edit(line)
             }
         }
     }
@@ -372,7 +346,10 @@ impl Reader {
     }
 
     fn vertex(&self, word: &str) -> Result<u32, String> {
-        let number: u32 = one(Some(word), "the number of a vertex")?;
+        self.known_vertex(one(Some(word), "the number of a vertex")?)
+    }
+
+    fn known_vertex(&self, number: u32) -> Result<u32, String> {
         match u64::from(number) < self.vertices {
             true => Ok(number),
             false => Err(format!(
@@ -383,7 +360,10 @@ impl Reader {
     }
 
     fn face(&self, word: &str) -> Result<u32, String> {
-        let number: u32 = one(Some(word), "the number of a face")?;
+        self.known_face(one(Some(word), "the number of a face")?)
+    }
+
+    fn known_face(&self, number: u32) -> Result<u32, String> {
         match u64::from(number) < self.faces {
             true => Ok(number),
             false => Err(format!(
@@ -396,65 +376,41 @@ impl Reader {
     fn edge(&self, word: &str) -> Result<[u32; 2], String> {
         let ends = word.split_once('-');
         let (a, b) = ends.ok_or_else(|| format!("`{word}`: an edge is two vertices, as in 3-7"))?;
-        let [a, b] = [self.vertex(a)?, self.vertex(b)?];
+        self.known_edge([self.vertex(a)?, self.vertex(b)?])
+    }
+
+    fn known_edge(&self, ends: [u32; 2]) -> Result<[u32; 2], String> {
+        let [a, b] = [self.known_vertex(ends[0])?, self.known_vertex(ends[1])?];
         match a == b {
-            true => Err(format!("`{word}`: the ends of an edge differ")),
+            true => Err(format!("`{a}-{b}`: the ends of an edge differ")),
             false => Ok([a.min(b), a.max(b)]),
         }
     }
 
-    fn edit<'w>(&mut self, edit: Edit, words: impl Iterator<Item = &'w str>) -> Result<(), String> {
-        let mut words: Vec<&str> = words.collect();
-        let mut call = EditCall::new(edit);
-        call.refused = words.pop_if(|word| *word == "refused").is_some();
-        let mut words = words.into_iter();
-        for argument in arguments(edit) {
-            let mut next = || words.next().ok_or_else(|| usage(edit));
-            match argument {
-                Argument::Edge => call.vertices.extend(self.edge(next()?)?),
-                Argument::Face => call.face = Some(self.face(next()?)?),
-                Argument::Vertex => call.vertices.push(self.vertex(next()?)?),
-                Argument::VertexIfAny(_) => call.vertices.push(match next()? {
-                    "-" => NONE,
-                    word => self.vertex(word)?,
-                }),
-                Argument::Vertices => {
-                    for word in words.by_ref() {
-                        call.vertices.push(self.vertex(word)?);
-                    }
-                }
-                Argument::Position => {
-                    let mut coordinate = || one(words.next(), "a coordinate");
-                    let at = Point::new(coordinate()?, coordinate()?, coordinate()?);
-                    if !at.is_finite() {
-                        return Err(format!("{edit}: a coordinate is not finite"));
-                    }
-                    call.at = Some(at);
-                }
+    fn edit(&mut self, line: &str) -> Result<(), String> {
+        let (text, refused) = match line.trim_end().strip_suffix(REFUSED) {
+            Some(text) => (text.trim_end(), true),
+            None => (line.trim_end(), false),
+        };
+        let call: EditByName = text.parse().map_err(|error| match error {
+            EditTextError::UnknownEdit(error) => {
+                UnknownName::new("call", &error.given, words()).to_string()
             }
-        }
-        nothing_more(words)?;
-        if !call.refused {
-            self.created(edit);
+            error => error.to_string(),
+        })?;
+        let call = call.try_map(
+            |&v| self.known_vertex(v),
+            |&ends| self.known_edge(ends),
+            |&f| self.known_face(f),
+        )?;
+        if !refused {
+            // An edit makes at most one vertex. The structure checks the number of faces.
+            self.vertices += 1;
+            self.faces = u32::MAX.into();
         }
         self.push(Op::Edit, ALL, [self.trace.edits.len() as u32, 0]);
-        self.trace.edits.push(call);
+        self.trace.edits.push(TracedEdit { call, refused });
         Ok(())
-    }
-
-    /// Counts the elements that an edit can create. An edge may have many faces, and a face many
-    /// corners: the structure checks the rest.
-    fn created(&mut self, edit: Edit) {
-        let most = u64::from(u32::MAX);
-        match edit {
-            Edit::AddVertex | Edit::SplitEdge => self.vertices += 1,
-            Edit::AddFace | Edit::SplitFace => self.faces += 1,
-            Edit::BisectEdge | Edit::PokeFace | Edit::SplitVertex => {
-                self.vertices += 1;
-                self.faces = most;
-            }
-            _ => {}
-        }
     }
 
     fn finish(self) -> Result<Trace, String> {
@@ -500,17 +456,4 @@ fn nothing_more<'w>(mut words: impl Iterator<Item = &'w str>) -> Result<(), Stri
         None => Ok(()),
         Some(word) => Err(format!("`{word}` is one word too many on this line")),
     }
-}
-
-/// Returns the arguments of an edit, for messages.
-fn usage(edit: Edit) -> String {
-    let names = arguments(edit).iter().map(|argument| match argument {
-        Argument::Edge => "A-B",
-        Argument::Face => "FACE",
-        Argument::Vertex => "VERTEX",
-        Argument::VertexIfAny(name) => name,
-        Argument::Vertices => "VERTEX…",
-        Argument::Position => "X Y Z",
-    });
-    format!("{edit}: expected {}", names.collect::<Vec<_>>().join(" "))
 }

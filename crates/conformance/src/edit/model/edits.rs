@@ -20,19 +20,22 @@ impl Model {
             Action::AddFace { ref corners } => self.add_face(corners),
             Action::RemoveFace { f } => self.remove_face(f),
             Action::RemoveVertex { v } => self.remove_vertex(v),
-            Action::RemoveIsolatedVertices => {
+            Action::RemoveIsolatedVertices {} => {
                 self.remove_isolated();
                 Some(())
             }
-            Action::SplitEdge { ends, at } => self.split_edge(ends, at),
-            Action::BisectEdge { ends, at } => self.bisect_edge(ends, at),
+            Action::SplitEdge { e, at } => self.split_edge(e, at),
+            Action::BisectEdge { e, at } => self.bisect_edge(e, at),
             Action::PokeFace { f, at } => self.poke_face(f, at),
             Action::SplitFace { f, ends } => self.split_face(f, ends),
-            Action::DissolveEdge { ends } => self.dissolve_edge(ends),
-            Action::FlipEdge { ends } => self.flip_edge(ends),
-            Action::CollapseEdge { ends, to } => self.collapse_edge(ends, to, rules),
+            Action::DissolveEdge { e } => self.dissolve_edge(e),
+            Action::FlipEdge { e } => self.flip_edge(e),
+            Action::CollapseEdge { e, keep, to } => {
+                let removed = e.into_iter().find(|&end| end != keep)?;
+                self.collapse_edge([keep, removed], to, rules)
+            }
             Action::SplitVertex { v, left, right, at } => self.split_vertex(v, left, right, at),
-            Action::Compact => Some(()),
+            Action::Compact {} => Some(()),
         }
     }
 

@@ -61,9 +61,7 @@ function walkResult(answer) {
   const { stopped, expected } = answer;
   const parts = [`${count(answer.reads, "read")}, ${count(answer.cache_lines, "cache line")}, ${count(answer.bytes, "byte")}. `];
   if (stopped) parts.push(`The walk stopped: ${stopped}. `);
-  const isSame = expected && expected.missing.length === 0 && expected.extra.length === 0;
-  if (isSame) parts.push(`The results are those of ${expected.relation}.`);
-  if (expected?.missing.length) parts.push(`Missing: ${expected.missing.join(", ")}. `);
-  if (expected?.extra.length) parts.push(`Not in ${expected.relation}: ${expected.extra.join(", ")}. `);
-  return el("p", { id: "walk-result", class: isSame && !stopped ? "good" : "refusal" }, parts.join(""));
+  if (expected) parts.push(expected.verdict);
+  const isRight = expected && [expected.missing, expected.extra, expected.repeated].every((names) => names.length === 0);
+  return el("p", { id: "walk-result", class: isRight && !stopped ? "good" : "refusal" }, parts.join(""));
 }

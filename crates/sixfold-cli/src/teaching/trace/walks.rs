@@ -38,8 +38,9 @@ pub(super) fn run(
         refused: &refused,
     };
     begun.text.finish_with_document(begun.json, &document)?;
-    let is_right =
-        |walk: &Walk| walk.stopped.is_none() && walk.expected.as_ref().is_none_or(is_equal);
+    let is_right = |walk: &Walk| {
+        walk.stopped.is_none() && walk.expected.as_ref().is_none_or(Comparison::is_right)
+    };
     Ok(match walks.iter().all(is_right) {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(1),
@@ -57,10 +58,6 @@ fn expected(text: &str) -> Result<Query, Failure> {
     let relation = arguments::relation(relation).map_err(Failure::usage)?;
     let element = element.parse().map_err(Failure::usage)?;
     Ok((relation, element))
-}
-
-fn is_equal(comparison: &Comparison) -> bool {
-    comparison.missing.is_empty() && comparison.extra.is_empty()
 }
 
 fn block(mesh: &str, walk: &Walk) -> String {
@@ -81,27 +78,7 @@ fn block(mesh: &str, walk: &Walk) -> String {
         ));
     }
     if let Some(comparison) = &walk.expected {
-        parts.push(hanging_indent("", &compared(comparison)));
+        parts.push(hanging_indent("", &comparison.verdict));
     }
     parts.join("\n\n")
-}
-
-/// Says whether the results are those of the relation.
-fn compared(comparison: &Comparison) -> String {
-    let Comparison {
-        relation, element, ..
-    } = comparison;
-    if is_equal(comparison) {
-        return format!("Right: the walk yields {relation} of {element}.");
-    }
-    let mut differences = Vec::new();
-    if !comparison.missing.is_empty() {
-        differences.push(format!("does not yield {}", comparison.missing.join(", ")));
-    }
-    if !comparison.extra.is_empty() {
-        let extra = comparison.extra.join(", ");
-        differences.push(format!("yields {extra} too often"));
-    }
-    let differences = differences.join(", and ");
-    format!("Not {relation} of {element}: the walk {differences}.")
 }

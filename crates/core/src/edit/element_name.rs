@@ -3,8 +3,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::error::ExplainError;
-
 /// The name of an element. The numbers are those of the mesh file, from 0; elements that edits make have
 /// the next numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +13,15 @@ pub enum ElementName {
     Edge([u32; 2]),
     /// A face: `f2`.
     Face(u32),
+}
+
+/// The error for a text that is not the name of an element.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{text}` names no element: write v3 for a vertex, v0-v1 for an edge, f2 for a face")]
+#[non_exhaustive]
+pub struct NoElementName {
+    /// The text.
+    pub text: String,
 }
 
 impl ElementName {
@@ -39,9 +46,9 @@ impl fmt::Display for ElementName {
 }
 
 impl FromStr for ElementName {
-    type Err = ExplainError;
+    type Err = NoElementName;
 
-    fn from_str(text: &str) -> Result<Self, ExplainError> {
+    fn from_str(text: &str) -> Result<Self, NoElementName> {
         let number = |text: &str, letter| text.strip_prefix(letter)?.parse().ok();
         let edge = || {
             let (a, b) = text.split_once('-')?;
@@ -50,7 +57,7 @@ impl FromStr for ElementName {
         let vertex = || number(text, 'v').map(Self::Vertex);
         let face = || number(text, 'f').map(Self::Face);
         let element = vertex().or_else(face).or_else(edge);
-        element.ok_or_else(|| ExplainError::BadName { name: text.into() })
+        element.ok_or_else(|| NoElementName { text: text.into() })
     }
 }
 
