@@ -14,8 +14,7 @@ page = Claims(
         library of six mesh data structures
         behind one query trait
         complete the six
-        Rust 1.92 or newer
-        1.88 is enough for the libraries
+        Rust 1.88 or newer
         has the six structures
         eight example programs
         seven [subdivision]
