@@ -118,7 +118,7 @@ def mark_text(row, ratio):
         return f"≥ {shown(rounded_down(ratio))}"
     ends = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
     has_interval = ends[0] is not None and row.get("samples", 99) >= 3 and shown(ends[0]) != shown(ends[1])
-    if "ratio_ci_low" in row and rounded(ratio) == 1:
+    if "ratio_ci_low" in row and ratio == 1:
         has_interval = False
     return f"{shown(ratio)} ({shown(ends[0])} to {shown(ends[1])})" if has_interval else shown(ratio)
 
