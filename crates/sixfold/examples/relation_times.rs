@@ -43,10 +43,11 @@ fn token(handle: impl Hash) -> u64 {
 macro_rules! sweeps {
     ($($relation:ident at $elements:ident),+ $(,)?) => {
         $(#[inline(never)]
-        fn $relation<M: MeshQuery>(mesh: &M) -> u64 {
-            mesh.$elements().fold(0, |sum: u64, element| {
+        fn $relation<M: MeshQuery>(mesh: &M) -> (u64, u64) {
+            // The number of results, and the sum of their tokens.
+            mesh.$elements().fold((0, 0), |sums: (u64, u64), element| {
                 let found = mesh.$relation(element).into_iter();
-                found.fold(sum, |sum, handle| sum.wrapping_add(token(handle)))
+                found.fold(sums, |(count, sum), handle| (count + 1, sum.wrapping_add(token(handle))))
             })
         })+
 

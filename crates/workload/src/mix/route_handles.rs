@@ -65,7 +65,7 @@ impl<M: MeshQuery> RouteHandles<M> {
                             range: Range<u64>,
                         ) -> u64 {
                             count_results(elements, range, |sink, element| {
-                                sink.consume(mesh.$query(element));
+                                sink.with(mesh.$query(element))
                             })
                         }
                         $query(mesh, &self.$list, range)
@@ -165,11 +165,11 @@ fn slices<H>(handles: &[H], range: Range<u64>) -> impl Iterator<Item = &[H]> {
 fn count_results<H: Copy>(
     handles: &[H],
     range: Range<u64>,
-    mut query: impl FnMut(&mut Sink, H),
+    query: impl Fn(Sink, H) -> Sink,
 ) -> u64 {
     let mut sink = Sink::default();
     for slice in slices(handles, range) {
-        slice.iter().for_each(|&handle| query(&mut sink, handle));
+        sink = slice.iter().fold(sink, |sink, &handle| query(sink, handle));
     }
     sink.finish_count()
 }

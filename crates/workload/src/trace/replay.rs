@@ -170,10 +170,10 @@ impl<M: MeshQuery> Replay<M> {
         macro_rules! query {
             ($handles:ident, $query:ident, $group:expr) => {{
                 let handles = self.$handles[$group.range.clone()].iter();
-                match $group.taken {
-                    ALL => handles.for_each(|&h| sink.consume(mesh.$query(h))),
-                    n => handles.for_each(|&h| {
-                        sink.consume(mesh.$query(h).into_iter().take(n as usize));
+                sink = match $group.taken {
+                    ALL => handles.fold(sink, |sink, &h| sink.with(mesh.$query(h))),
+                    n => handles.fold(sink, |sink, &h| {
+                        sink.with(mesh.$query(h).into_iter().take(n as usize))
                     }),
                 }
             }};
@@ -195,9 +195,9 @@ impl<M: MeshQuery> Replay<M> {
                     }
                     positions += group.range.len() as u64;
                 }
-                Op::List(ElementKind::Vertex) => sink.consume(mesh.vertices().take(taken)),
-                Op::List(ElementKind::Edge) => sink.consume(mesh.edges().take(taken)),
-                Op::List(ElementKind::Face) => sink.consume(mesh.faces().take(taken)),
+                Op::List(ElementKind::Vertex) => sink = sink.with(mesh.vertices().take(taken)),
+                Op::List(ElementKind::Edge) => sink = sink.with(mesh.edges().take(taken)),
+                Op::List(ElementKind::Face) => sink = sink.with(mesh.faces().take(taken)),
                 Op::Edit => {
                     for call in &self.edits[group.range.clone()] {
                         edit(mesh, call);
