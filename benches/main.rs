@@ -15,7 +15,8 @@ mod zero_cost;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use sixfold_study::{HeapGuard, Policy};
+use sixfold_results::Policy;
+use sixfold_study::HeapGuard;
 
 /// Configures criterion for short measurements. Freed pages stay in the process, so that
 /// allocations cause no page faults.

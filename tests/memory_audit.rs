@@ -13,7 +13,8 @@ use sixfold::{
     structure_infos,
 };
 use sixfold_core::Measured;
-use sixfold_study::{Audit, Backend, Heap, StudyMesh, audit};
+use sixfold_results::Audit;
+use sixfold_study::{Backend, Heap, StudyMesh, audit};
 use stats_alloc::StatsAlloc;
 
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]

@@ -10,10 +10,11 @@ use sixfold::{
     Creases, EditableIndexedFaceSet, FaceVertexMesh, PolygonMesh, Representation,
     repeat_for_structures, shapes,
 };
+use sixfold_results::{Agreement, Need, PickReport, Policy, Standing};
 use sixfold_study::{
-    Agreement, Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Need, Operation,
-    PickReport, PickSettings, Policy, Refiner, Series, Settings, SingleEdit, Standing, StudyError,
-    StudyMesh, SubdivisionJob, Way, built_in, inspect, pick, study,
+    Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Operation, PickSettings,
+    Refiner, Series, Settings, SingleEdit, StudyError, StudyMesh, SubdivisionJob, Way, built_in,
+    inspect, pick, study,
 };
 
 // The conformance suite uses this file too; see ARCHITECTURE.md.
@@ -62,7 +63,7 @@ fn check_study(seventh: Backend, refused: usize) {
     let rows: Vec<_> = rows.filter(|row| row.backend == seventh.name()).collect();
     assert_eq!(rows.len(), Operation::ALL.len() - refused);
     for row in rows {
-        let operation = row.operation;
+        let operation = &row.operation;
         assert_eq!(row.agreement, Agreement::Same, "{operation}");
         assert_ne!(row.standing, Some(Standing::Alone), "{operation}");
         assert!(row.median_ns.is_some_and(|ns| ns > 0.0), "{operation}");

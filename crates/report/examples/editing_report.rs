@@ -20,7 +20,8 @@ use serde::Deserialize;
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
-use sixfold_study::{Backend, EditPass, Editor, MachineClock, Run, Series, SingleEdit};
+use sixfold_results::Run;
+use sixfold_study::{Backend, EditPass, Editor, MachineClock, Series, SingleEdit};
 
 /// Side lengths of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];

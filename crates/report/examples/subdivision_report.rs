@@ -23,7 +23,8 @@ use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_report::{Panel, panels};
-use sixfold_study::{Backend, Clock, MachineClock, Refiner, Run, SubdivisionJob, Way};
+use sixfold_results::Run;
+use sixfold_study::{Backend, Clock, MachineClock, Refiner, SubdivisionJob, Way};
 
 /// The schemes of the report. Both accept triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];

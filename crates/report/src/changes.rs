@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use sixfold_study::numbers::{counted, duration, figure, grouped, times};
-use sixfold_study::{Change, Changes, Finding, Measurement, MeasurementPart, Results, Verdict};
+use sixfold_results::numbers::{counted, duration, figure, grouped, times};
+use sixfold_results::{Change, Changes, Finding, Measurement, MeasurementPart, Results, Verdict};
 
 use crate::figure::{Table, TitledTable};
 use crate::figures::{changes as changes_figure, file_name, machine, machines, ratios};

@@ -3,7 +3,7 @@
 pub(crate) mod rows;
 
 use serde::Serialize;
-use sixfold_study::{Figure as TimeRow, write_csv_rows};
+use sixfold_results::{Figure as TimeRow, write_csv_rows};
 
 /// Returns the data of a figure of times. `kind` is the name of the command that measured them.
 fn times<'r>(kind: &str, rows: impl IntoIterator<Item = TimeRow<'r>>) -> String {

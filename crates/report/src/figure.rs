@@ -1,6 +1,6 @@
 //! One figure with its table of numbers.
 
-use sixfold_study::numbers::grouped;
+use sixfold_results::numbers::grouped;
 
 use crate::Picture;
 
@@ -19,7 +19,7 @@ pub struct Figure {
     pub table: Table,
     /// The data of the figure as CSV, for other programs: a header, and one row for each mark. Numbers
     /// are plain decimals, and the names of the columns have the units. Figures of times have the columns
-    /// of [`Results::write_csv`](sixfold_study::Results::write_csv).
+    /// of [`Results::write_csv`](sixfold_results::Results::write_csv).
     pub csv: String,
     /// How many samples, when, with which seed, on which machine; empty until the page is complete.
     pub source: String,

@@ -14,8 +14,8 @@ pub(crate) mod ratios;
 mod reads;
 mod roofline;
 
-use sixfold_study::numbers::{counted, grouped, times};
-use sixfold_study::{Environment, Finding, MeshReport, Operation, Report, Results, Run};
+use sixfold_results::numbers::{counted, grouped, times};
+use sixfold_results::{Environment, Finding, MeshReport, Report, Results, Run};
 
 use crate::data::rows;
 use crate::matrix::Matrix;
@@ -124,7 +124,7 @@ fn unsteady(study: &Report, results: &Results) -> Option<String> {
     let given = orders.flat_map(|orders| &orders.results);
     let given = given.filter(|row| row.case == "given").filter_map(|row| {
         Some((
-            row.operation,
+            row.operation.as_str(),
             &row.backend,
             row.median_ns.and(row.ns_per_element)?,
         ))
@@ -132,16 +132,16 @@ fn unsteady(study: &Report, results: &Results) -> Option<String> {
     let why = results.why().filter(|why| is_same(&why.mesh));
     let timed = why.flat_map(|why| &why.rows);
     let timed = timed.filter_map(|row| {
-        let operation = Operation::Relation(row.reads.relation);
+        let operation = row.reads.relation.name();
         Some((operation, &row.backend, row.timed?.ns_per_element))
     });
     let factors = given.chain(timed).filter_map(|(operation, backend, ns)| {
-        let mut rows = study.rows(operation);
-        let row = rows.find(|row| row.backend == *backend && row.median_ns.is_some())?;
+        let row = study.row(operation, backend)?;
+        row.median_ns?;
         let factor = ns / row.ns_per_element?;
         Some((factor.max(factor.recip()), operation, backend))
     });
-    let factors: Vec<(f64, Operation, &String)> = factors.collect();
+    let factors: Vec<(f64, &str, &String)> = factors.collect();
     let count = factors
         .iter()
         .filter(|(factor, ..)| *factor > UNSTEADY)

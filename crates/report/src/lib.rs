@@ -33,7 +33,7 @@ mod summary;
 mod svg;
 
 use matrix::Matrix;
-use sixfold_study::Results;
+use sixfold_results::Results;
 
 pub use changes::Compared;
 pub use colours::structure_colours;

@@ -1,9 +1,9 @@
 //! All operations on all backends: what tables, rankings and heat maps show.
 
-use sixfold_study::numbers::{duration, figure, rounded_down};
-use sixfold_study::{
-    FIRST_TIME_SHOWN, Operation, Pool, Pooled, Quotient, RefusalKind, Report, ResultRow, Standing,
-    mean_quotients,
+use sixfold_results::numbers::{duration, figure, rounded_down};
+use sixfold_results::{
+    FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Pool, Pooled, Quotient, RefusalKind, Report,
+    ResultRow, Standing, mean_quotients, operations,
 };
 
 use crate::figure::Table;
@@ -57,7 +57,7 @@ pub(crate) struct Line {
     /// What the operation does.
     pub(crate) about: String,
     /// The kind of work.
-    pub(crate) group: &'static str,
+    pub(crate) group: OperationGroup,
     /// The element that times are divided by.
     pub(crate) unit: String,
     /// One cell for each backend of the matrix, in its order.
@@ -154,9 +154,8 @@ impl Cell {
         notes.join("; ")
     }
 
-    fn of_study(study: &Report, operation: Operation, backend: &str) -> Self {
-        let mut rows = study.rows(operation);
-        let Some(row) = rows.find(|row| row.backend == backend) else {
+    fn of_study(study: &Report, operation: &str, backend: &str) -> Self {
+        let Some(row) = study.row(operation, backend) else {
             let mut refusals = study.refusals.iter();
             let refusal = refusals.find(|r| r.operation == operation && r.backend == backend);
             let source = match refusal.map(|refusal| refusal.kind) {
@@ -205,7 +204,7 @@ impl Cell {
     fn bound(study: &Report, row: &ResultRow) -> Self {
         let each = |row: &ResultRow, ns: f64| Some(ns / row.elements.filter(|&n| n > 0)? as f64);
         let ns = row.estimated_ns.and_then(|ns| each(row, ns));
-        let mut rows = study.rows(row.operation);
+        let mut rows = study.rows(&row.operation);
         let best = rows.find(|row| row.ratio_to_best == Some(1.0));
         let best = best.and_then(|best| best.ns_per_element);
         Self {
@@ -255,7 +254,8 @@ impl Matrix {
     pub(crate) fn of_study(study: &Report) -> Self {
         let holding = study.backends.iter().filter(|backend| backend.holds);
         let backends: Vec<String> = holding.map(|backend| backend.name.clone()).collect();
-        let lines = operations().filter_map(|operation| {
+        let lines = by_group(&[study]).filter_map(|info| {
+            let operation = info.name.as_str();
             let unit = study.rows(operation).next()?.per.clone();
             let cells = backends.iter().map(|name| Cell {
                 quotients: backends
@@ -264,7 +264,7 @@ impl Matrix {
                     .collect(),
                 ..Cell::of_study(study, operation, name)
             });
-            Some(Line::new(operation, unit, cells.collect()))
+            Some(Line::new(info, unit, cells.collect()))
         });
         Self {
             lines: lines.collect(),
@@ -280,7 +280,8 @@ impl Matrix {
                 backends.push(row.backend.clone());
             }
         }
-        let lines = operations().filter_map(|operation| {
+        let lines = by_group(studies).filter_map(|info| {
+            let operation = info.name.as_str();
             let rows = pool.all().iter().filter(|row| row.operation == operation);
             let rows: Vec<&Pooled> = rows.collect();
             rows.first()?;
@@ -297,7 +298,7 @@ impl Matrix {
                 None => Cell::new(name, Source::NotRun),
             };
             let cells = backends.iter().zip(quotients).map(cell).collect();
-            Some(Line::new(operation, operation.unit().to_owned(), cells))
+            Some(Line::new(info, info.unit.clone(), cells))
         });
         Self {
             lines: lines.collect(),
@@ -307,20 +308,15 @@ impl Matrix {
 }
 
 /// Returns the measured ratios of one backend to the fastest of each mesh.
-fn ratios(studies: &[&Report], operation: Operation, backend: &str) -> Vec<f64> {
-    let ratio = |study: &&Report| {
-        let mut rows = study.rows(operation);
-        rows.find(|row| row.backend == backend)?.ratio_to_best
-    };
+fn ratios(studies: &[&Report], operation: &str, backend: &str) -> Vec<f64> {
+    let ratio = |study: &&Report| study.row(operation, backend)?.ratio_to_best;
     studies.iter().filter_map(ratio).collect()
 }
 
 /// Returns the operations, those of a group one after the other.
-fn operations() -> impl Iterator<Item = Operation> {
-    const GROUPS: [&str; 5] = ["build", "queries", "traversals", "edits", "subdivision"];
-    let place = |operation: &Operation| GROUPS.iter().position(|g| *g == operation.group());
-    let mut operations = Operation::ALL;
-    operations.sort_by_key(place);
+fn by_group<'s>(studies: &[&'s Report]) -> impl Iterator<Item = &'s OperationInfo> + use<'s> {
+    let mut operations = operations(studies);
+    operations.sort_by_key(|operation| operation.group);
     operations.into_iter()
 }
 
@@ -343,11 +339,11 @@ impl Matrix {
 }
 
 impl Line {
-    fn new(operation: Operation, unit: String, cells: Vec<Cell>) -> Self {
+    fn new(operation: &OperationInfo, unit: String, cells: Vec<Cell>) -> Self {
         Self {
-            name: operation.name().to_owned(),
-            about: operation.about().to_owned(),
-            group: operation.group(),
+            name: operation.name.clone(),
+            about: operation.about.clone(),
+            group: operation.group,
             unit,
             cells,
         }

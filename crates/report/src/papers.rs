@@ -7,7 +7,7 @@ mod tex;
 
 use std::fmt::Write as _;
 
-use sixfold_study::Results;
+use sixfold_results::Results;
 use thiserror::Error;
 
 use crate::{Figure, PdfError, ReportPage};

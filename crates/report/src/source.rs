@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use sixfold_study::numbers::{counted, grouped};
-use sixfold_study::{Finding, Status};
+use sixfold_results::numbers::{counted, grouped};
+use sixfold_results::{Finding, Status};
 
 use crate::data::date;
 

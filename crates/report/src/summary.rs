@@ -3,10 +3,10 @@
 
 use crate::figure::Table;
 use crate::figures::break_even;
-use sixfold_study::numbers::{counted, figure, grouped, list, shown_ratio, times};
-use sixfold_study::{
-    BackendReport, FEWEST_OF_A_WINNER, OrdersReport, Overall, Pool, Purpose, Report, Results,
-    Standing, leaders,
+use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, times};
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_results::{
+    BackendReport, OrdersReport, Overall, Pool, Purpose, Report, Results, Standing, leaders,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -328,12 +328,12 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
 /// operation.
 fn order_effect<'r>(orders: &'r OrdersReport, backend: &str) -> Option<(f64, &'r str)> {
     let effects = orders.comparisons.iter().filter_map(|comparison| {
-        let rows = orders.rows(comparison.operation);
+        let rows = orders.rows(&comparison.operation);
         let rows = rows.filter(|row| row.backend == backend && row.ratio_to_best.is_some());
         let times: Vec<f64> = rows.filter_map(|row| row.ns_per_element).collect();
         let least = times.iter().copied().reduce(f64::min)?;
         let most = times.iter().copied().reduce(f64::max)?;
-        Some((shown_ratio(most, least), comparison.operation.name()))
+        Some((shown_ratio(most, least), comparison.operation.as_str()))
     });
     effects.max_by(|a, b| a.0.total_cmp(&b.0))
 }
@@ -497,12 +497,12 @@ fn one_operation(study: &Report, leader: &Overall) -> Option<String> {
         .results
         .iter()
         .filter(|row| row.backend == leader.backend);
-    let own = own.filter(|row| Purpose::of(row.operation) == Purpose::Query);
+    let own = own.filter(|row| study.run.purpose_of(&row.operation) == Some(Purpose::Query));
     let slower = own.filter(|row| row.standing == Some(Standing::Slower));
     let slower = slower.filter_map(|row| Some((row, study.shown_ratio(row)?)));
     let (row, ratio) = slower.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let best = study
-        .rows(row.operation)
+        .rows(&row.operation)
         .find(|row| row.ratio_to_best == Some(1.0))?;
     (ratio >= LEAST_GAIN).then(|| {
         format!(

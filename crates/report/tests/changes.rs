@@ -5,10 +5,11 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 use sixfold_report::{Compared, Figure, ReportPage};
-use sixfold_study::{
-    BytesChange, Change, Changes, Effort, Failed, FailureKind, Finding, Measurement, NewWinner,
-    Operation, Results, SettingChange, Settings, StudyMesh, Verdict, study,
+use sixfold_results::{
+    BytesChange, Change, Changes, Failed, FailureKind, Finding, Measurement, NewWinner, Results,
+    SCHEMA, SettingChange, Verdict,
 };
+use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 
 const COMMAND: &str = "sixfold compare a.json b.json --report changes";
 const DRIFT: f64 = 1.2;
@@ -59,7 +60,7 @@ fn of_different_work(change: Change) -> Change {
 
 fn changes(rows: Vec<Change>) -> Changes {
     Changes {
-        schema: 3,
+        schema: SCHEMA,
         environment: Vec::new(),
         overall: (!rows.is_empty()).then_some(1.0),
         relative: false,

@@ -6,10 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 use sixfold_report::{Figure, Rank, ReportPage, SummaryFigure, Table};
-use sixfold_study::{
-    Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings, Standing,
-    StudyMesh, study,
-};
+use sixfold_results::{Failed, FailureKind, Finding, Report, Results, Standing};
+use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 
 /// Enough rounds for intervals.
 const ROUNDS: NonZeroU32 = NonZeroU32::new(8).expect("above 0");
@@ -572,7 +570,7 @@ fn an_unsteady_machine_is_warned_of() {
     let mesh = StudyMesh::new("ball.obj", shapes::icosahedron());
     let orders = sixfold_study::orders(&mesh, &settings, &AtomicBool::new(false), &mut |_| ());
     let mut orders = orders.expect("orders");
-    let warning = |orders: &sixfold_study::OrdersReport, factor: f64| {
+    let warning = |orders: &sixfold_results::OrdersReport, factor: f64| {
         let mut study = report("ball.obj");
         let mut orders = orders.clone();
         for row in &mut study.results {
@@ -617,10 +615,10 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
     );
     study
         .results
-        .retain(|row| row.operation != Operation::Boundary);
+        .retain(|row| row.operation != Operation::Boundary.name());
     for row in &mut study.results {
-        match row.operation {
-            Operation::Build => {
+        match row.operation.as_str() {
+            "build" => {
                 row.first_ns = None;
                 row.median_ns = Some(match row.backend.as_str() {
                     "face-vertex" => 900.0,
@@ -628,7 +626,7 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
                     _ => 100.0,
                 });
             }
-            _ => row.operation = Operation::AllQueries,
+            _ => row.operation = "all_queries".into(),
         }
         row.elements = Some(1_000_000);
     }
@@ -646,7 +644,7 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
     );
     // A structure that is the fastest from the start has no steps.
     for row in &mut study.results {
-        if row.operation == Operation::Build {
+        if row.operation == Operation::Build.name() {
             row.median_ns = Some(0.001);
         }
     }
@@ -720,7 +718,7 @@ fn the_answer_says_what_would_change_it() {
     assert!(!said(&study).contains("little memory"), "{}", said(&study));
     // In one operation, the corner table is much faster.
     for row in &mut study.results {
-        if row.operation == Operation::Boundary && row.backend != "polygon-soup" {
+        if row.operation == Operation::Boundary.name() && row.backend != "polygon-soup" {
             let fast = row.backend == "corner-table";
             let (ns, ratio) = if fast { (10.0, 1.0) } else { (13.0, 1.3) };
             row.ns_per_element = Some(ns);

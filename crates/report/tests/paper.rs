@@ -5,10 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 use sixfold_report::{PaperFile, ReportPage};
-use sixfold_study::{
-    CacheState, Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings,
-    Standing, StudyMesh, study,
-};
+use sixfold_results::{CacheState, Failed, FailureKind, Finding, Report, Results, Standing};
+use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 
 /// Enough rounds for intervals.
 const ROUNDS: NonZeroU32 = NonZeroU32::new(8).expect("above 0");
@@ -111,7 +109,7 @@ fn the_data_of_figures_are_those_of_the_results() {
         ];
         let mut rows = columns(text(&files, "rankings.csv"), names);
         rows.retain(|cells| cells[1] == operation.name());
-        let ranked: Vec<_> = study.rows(operation).collect();
+        let ranked: Vec<_> = study.rows(operation.name()).collect();
         assert_eq!(rows.len(), ranked.len());
         for (cells, row) in rows.iter().zip(ranked) {
             assert_eq!(cells[..2], [row.backend.as_str(), operation.name()]);
@@ -137,7 +135,7 @@ fn the_data_of_figures_are_those_of_the_results() {
     assert_eq!(bytes, expected.collect::<Vec<_>>());
     let lines = columns(text(&files, "break-even.csv"), ["backend", "run_ns"]);
     for [backend, ns] in lines {
-        let mut rows = study.rows(Operation::VertexNormal);
+        let mut rows = study.rows(Operation::VertexNormal.name());
         let row = rows.find(|row| row.backend == backend).expect("measured");
         assert_eq!(ns.parse().ok(), row.median_ns);
     }
@@ -298,7 +296,7 @@ fn methods_are_true_for_the_results() {
     }
 }
 
-/// Documents of older versions have no corrected times.
+/// Documents that were converted from schema 2 have no corrected times.
 #[test]
 fn methods_of_uncorrected_times_state_no_correction() {
     let mut all = results(&["ball.obj"]);

@@ -27,7 +27,8 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use sixfold::shapes::{GENERATORS, Generator, Order, generator};
 use sixfold::{Relation, UnknownName};
-use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
+use sixfold_results::{CacheState, Policy};
+use sixfold_study::{Effort, External, Operation, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use convert::Convert;

@@ -4,7 +4,7 @@ use comfy_table::{Cell, CellAlignment};
 
 use crate::tables::{stacked, unbroken};
 use crate::text::width;
-use sixfold_study::numbers::figure;
+use sixfold_results::numbers::figure;
 
 /// A column of a table: a heading, and a cell for each row.
 pub(crate) struct Column {

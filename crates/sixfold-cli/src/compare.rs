@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold_report::{Compared, PaperFile, ReportPage};
-use sixfold_study::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
+use sixfold_results::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;
@@ -24,7 +24,7 @@ use crate::output::{Output, cannot_write, check_not_overwritten, check_outputs, 
 use crate::paper;
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::{duration, grouped};
+use sixfold_results::numbers::{duration, grouped};
 
 /// Maximum number of listed measurements that only one file has.
 const SHOWN: usize = 8;

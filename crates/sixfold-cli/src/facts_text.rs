@@ -2,10 +2,11 @@
 
 use sixfold::repair::Measures;
 use sixfold::{Distribution, Facts, structure_infos};
-use sixfold_study::{BackendReport, MeshReport, Settings, StudyMesh};
+use sixfold_results::{BackendReport, MeshReport};
+use sixfold_study::{Settings, StudyMesh};
 
 use crate::text::{TextOutput, coordinate, figure, hanging_indent, sanitize};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 /// Width of the labels.
 const LABEL: usize = 13;

@@ -6,7 +6,7 @@ use std::path::Path;
 use sixfold::io::{self, LeftOut, PolygonPlaces};
 use sixfold::repair::{Crack, Diagnosis, Fault, FaultKind, Place, Step};
 use sixfold::{Capabilities, FaceId, PolygonMesh, structure_infos};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 use serde::Serialize;
 

@@ -1,8 +1,8 @@
 //! Free memory, and the memory of this process.
 
 use crate::failure::Failure;
+use sixfold_results::numbers::bytes;
 use sixfold_study::free_memory;
-use sixfold_study::numbers::bytes;
 
 /// Returns an error if `what` needs more than the free memory. `instead` is the recommended
 /// alternative.

@@ -11,7 +11,7 @@ use crate::mesh_files::MeshOutput;
 use crate::output::is_stdout;
 use crate::progress::exit_on_interrupt;
 use crate::text::{TextOutput, hanging_indent, sanitize};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     exit_on_interrupt();

@@ -4,9 +4,9 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 use comfy_table::Cell;
+use sixfold_results::{Fit, GrowthReport, ResultRow, SizeReport, Slope};
 use sixfold_study::{
-    Fit, GrowthError, GrowthReport, GrowthSettings, Operation, ResultRow, SCALABLE_SHAPES,
-    ScalableShape, Settings, SizeReport, Slope, StudyError,
+    GrowthError, GrowthSettings, SCALABLE_SHAPES, ScalableShape, Settings, StudyError,
 };
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
@@ -20,7 +20,7 @@ use crate::signs::{Signs, right};
 use crate::study::{name_lists, print_end};
 use crate::tables::{stacked, styled, unbroken};
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     let mut session = Session::open(None, &arguments.files, arguments.memory.heap)?;
@@ -116,7 +116,7 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
     let mut signs = Signs::new("fastest at this size", text.bold());
     let operations = report.sizes.first().map_or(&[][..], |size| &size.results);
     for rows in operations.chunk_by(|a, b| a.operation == b.operation) {
-        text.print_line(&table(report, rows[0].operation, &mut signs));
+        text.print_line(&table(report, &rows[0], &mut signs));
         text.print_line("");
     }
     if !report.sizes.is_empty() {
@@ -142,24 +142,22 @@ const LEGEND: [&str; 3] = [
     "in cache, beyond: power for the sizes that fit into the last cache, and for the larger ones",
 ];
 
-/// Returns the table with a row per size and fitted line, and a column per backend.
-fn table(report: &GrowthReport, operation: Operation, signs: &mut Signs) -> String {
+/// Returns the table of the operation of `measured`, with a row per size and fitted line, and a column per backend.
+fn table(report: &GrowthReport, measured: &ResultRow, signs: &mut Signs) -> String {
     stacked(&report.backends, |backends| {
-        table_of_backends(report, operation, backends, signs)
+        table_of_backends(report, measured, backends, signs)
     })
 }
 
 /// Returns the table of some of the backends.
 fn table_of_backends(
     report: &GrowthReport,
-    operation: Operation,
+    measured: &ResultRow,
     backends: &[String],
     signs: &mut Signs,
 ) -> String {
-    let mut header = vec![Cell::new(format!(
-        "{operation}\nns per {}",
-        operation.unit()
-    ))];
+    let ResultRow { operation, per, .. } = measured;
+    let mut header = vec![Cell::new(format!("{operation}\nns per {per}"))];
     header.extend(backends.iter().map(|name| right(name.replace('-', "\n"))));
     let mut table = unbroken(header, signs.is_bold());
     for size in &report.sizes {
@@ -167,13 +165,13 @@ fn table_of_backends(
         let mut line = vec![right(faces)];
         line.extend(backends.iter().map(|name| {
             let mut rows = size.results.iter();
-            let row = rows.find(|r| r.backend == *name && r.operation == operation);
+            let row = rows.find(|r| r.backend == *name && r.operation == *operation);
             row.map_or_else(|| right("–"), |row| cell(size, row, signs))
         }));
         table.add_row(line);
     }
     let fit = |name: &String| {
-        let is_same = |fit: &&Fit| fit.backend == *name && fit.operation == operation;
+        let is_same = |fit: &&Fit| fit.backend == *name && fit.operation == *operation;
         report.fits.iter().find(is_same)
     };
     for label in ["power", "in cache", "beyond"] {

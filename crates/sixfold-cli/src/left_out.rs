@@ -1,7 +1,7 @@
 //! Notes on missing and estimated figures, below the conclusions: one paragraph for each reason.
 
-use sixfold_study::numbers::duration;
-use sixfold_study::{Refusal, Report, ResultRow};
+use sixfold_results::numbers::duration;
+use sixfold_results::{Refusal, Report, ResultRow};
 
 /// Explains why figures of a study are missing or only estimated.
 pub(crate) fn left_out_notes(report: &Report) -> Vec<String> {
@@ -25,7 +25,7 @@ fn not_run_notes(results: &[ResultRow]) -> Vec<String> {
         let longest = rows.iter().max_by(|a, b| time(a).total_cmp(&time(b)))?;
         let places = rows
             .iter()
-            .map(|row| (row.operation.name(), row.backend.as_str()));
+            .map(|row| (row.operation.as_str(), row.backend.as_str()));
         Some(format!(
             "≥ not run, because a run would take long ({} on {}: {} or more): {}. To run them, \
              {remedy}.",
@@ -56,7 +56,7 @@ pub(crate) fn refusal_notes<'r>(refusals: impl IntoIterator<Item = &'r Refusal>)
     let line = |(_, same): (String, Vec<&Refusal>)| {
         let places = same
             .iter()
-            .map(|r| (r.operation.name(), r.backend.as_str()));
+            .map(|r| (r.operation.as_str(), r.backend.as_str()));
         format!("– {}: {}", grouped_places(places), same[0].reason)
     };
     reasons.into_iter().map(line).collect()
@@ -95,7 +95,7 @@ mod tests {
         let refusal = |backend: &str, operation: &str, reason: &str| Refusal {
             backend: backend.into(),
             operation: operation.parse().expect("an operation"),
-            kind: sixfold_study::RefusalKind::Impossible,
+            kind: sixfold_results::RefusalKind::Impossible,
             reason: reason.into(),
         };
         let triangles = "face f0 has 4 corners, and edits need triangles";

@@ -7,7 +7,8 @@ use sixfold::glam::DVec3;
 use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
 use sixfold::{Creases, PolygonMesh, shapes};
-use sixfold_study::{Results, StudyMesh, sha256_of};
+use sixfold_results::Results;
+use sixfold_study::{StudyMesh, sha256_of};
 
 use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;
@@ -15,7 +16,7 @@ use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{read_mesh, read_mesh_at, shown};
 use crate::text::print_notice;
 use crate::triangulate::{cut_polygons, triangulated};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;

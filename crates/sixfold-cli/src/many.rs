@@ -12,9 +12,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_study::{
-    Failed, FailureKind, Finding, Report, Results, Settings, StudyError, StudyMesh,
-};
+use sixfold_results::{Failed, FailureKind, Finding, Report, Results};
+use sixfold_study::{Settings, StudyError, StudyMesh};
 
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;
@@ -28,7 +27,7 @@ use crate::paper;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) use draw::run as draw;
 pub(crate) use labs::LabSelection;

@@ -6,8 +6,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_study::numbers::counted;
-use sixfold_study::{Agreement, Finding, Policy, Report, ResultRow, Results, StudyMesh};
+use sixfold_results::numbers::counted;
+use sixfold_results::{Agreement, Finding, Policy, Report, ResultRow, Results};
+use sixfold_study::StudyMesh;
 
 use crate::arguments::ResultFiles;
 use crate::failure::Failure;
@@ -195,14 +196,14 @@ fn code_of(
 
 /// Prints an error about a result of an external program that differs from the results of Sixfold.
 fn print_different_work(study: &Report, row: &ResultRow) {
-    let ours = study.rows(row.operation);
+    let ours = study.rows(&row.operation);
     let mut ours = ours.filter(|other| other.agreement == Agreement::Same);
     let ours = ours.find_map(|other| other.checksum);
     let [theirs, ours] = [row.checksum, ours].map(|checksum| match checksum {
         Some(checksum) => checksum.to_string(),
         None => "not a number".into(),
     });
-    let (name, operation, mesh) = (&row.backend, row.operation, &study.mesh.name);
+    let (name, operation, mesh) = (&row.backend, &row.operation, &study.mesh.name);
     print_stderr(&format!(
         "error: {mesh}: {name}: the checksum of {operation} is {theirs}, but {ours} on the \
          built-in backends. The results differ, so the times of the program are not comparable: \

@@ -2,9 +2,8 @@
 
 use std::process::ExitCode;
 
-use sixfold_study::{
-    Audit, Backend, BackendAudit, MAX_SCANNED_FACES, Policy, Settings, audit, count_allocations,
-};
+use sixfold_results::{Audit, BackendAudit, Policy};
+use sixfold_study::{Backend, MAX_SCANNED_FACES, Settings, audit, count_allocations};
 
 use crate::AllocatorCounters;
 use crate::arguments::Memory;
@@ -16,7 +15,7 @@ use crate::load;
 use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
 use crate::text::{TextOutput, hanging_indent, print_stderr};
-use sixfold_study::numbers::{counted, figure, grouped};
+use sixfold_results::numbers::{counted, figure, grouped};
 
 /// The exit code if two of the three counts differ.
 const COUNTS_DIFFER: u8 = 1;
@@ -51,7 +50,7 @@ pub(crate) fn run(
     status.clear();
 
     // If every backend refuses the mesh, the list of reasons is the result.
-    let refusal_error = audit.refusal_error();
+    let refusal_error = sixfold_study::none_holds(&audit);
     if refusal_error.is_none() {
         print(&audit, &mut session.text);
     }

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::print_notice;
 use crate::triangulate::print_crossing;
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 /// Rounding is reported if it moves a vertex by more than this part of the size of the mesh. If the
 /// origin is inside the mesh or near it, rounding moves a vertex by at most 0.6e-7 of the size. So a

@@ -3,8 +3,9 @@
 use std::process::ExitCode;
 
 use comfy_table::Cell;
-use sixfold_study::numbers::figure;
-use sixfold_study::{NeighboursReport, NeighboursSettings, Policy, SpatialTask};
+use sixfold_results::numbers::figure;
+use sixfold_results::{NeighboursReport, Policy, SpatialTask};
+use sixfold_study::NeighboursSettings;
 
 use crate::arguments::Neighbours;
 use crate::facts_text::facts_text;
@@ -59,7 +60,9 @@ fn table(report: &NeighboursReport, bold: bool) -> String {
     for task in SpatialTask::ALL {
         let mut line = vec![Cell::new(task), Cell::new(task.unit())];
         for index in &report.backends {
-            let row = report.rows(task).find(|row| row.backend == index.name);
+            let row = report
+                .rows(task.name())
+                .find(|row| row.backend == index.name);
             let text = row.map_or("–".into(), |row| signs.figure(row));
             line.push(signs.cell(text));
         }

@@ -9,14 +9,27 @@ use crate::arguments::Operations;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::{TextOutput, hanging_indent};
+use sixfold_results::OperationGroup;
 
 /// The groups, in the order of the list. Each group has a text on its operations.
-const GROUPS: [(&str, &str); 5] = [
-    ("build", "each run builds a new structure"),
-    ("queries", "each run queries every element once"),
-    ("traversals", "passes over all elements, as in programs"),
-    ("edits", "each run changes a copy of a mesh of triangles"),
-    ("subdivision", "each run refines the mesh by one step"),
+const GROUPS: [(OperationGroup, &str); 5] = [
+    (OperationGroup::Build, "each run builds a new structure"),
+    (
+        OperationGroup::Queries,
+        "each run queries every element once",
+    ),
+    (
+        OperationGroup::Traversals,
+        "passes over all elements, as in programs",
+    ),
+    (
+        OperationGroup::Edits,
+        "each run changes a copy of a mesh of triangles",
+    ),
+    (
+        OperationGroup::Subdivision,
+        "each run refines the mesh by one step",
+    ),
 ];
 
 pub(crate) fn run(arguments: &Operations) -> Result<ExitCode, Failure> {

@@ -5,9 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Cell, Table};
 use sixfold::shapes::Order;
-use sixfold_study::{
-    Comparison, DEFAULT_OPERATIONS, OrdersReport, ResultRow, Settings, StudyError, StudyMesh,
-};
+use sixfold_results::{Comparison, OrdersReport, ResultRow};
+use sixfold_study::{DEFAULT_OPERATIONS, Settings, StudyError, StudyMesh};
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;
@@ -21,7 +20,7 @@ use crate::signs::{Signs, right};
 use crate::study::{name_lists, print_end};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::{figure, shown_ratio};
+use sixfold_results::numbers::{figure, shown_ratio};
 
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
@@ -83,7 +82,7 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
     text.print_answer(&report.sentences, &report.warnings);
     let mut signs = Signs::new("best order of the structure", text.bold());
     for comparison in &report.comparisons {
-        let rows: Vec<&ResultRow> = report.rows(comparison.operation).collect();
+        let rows: Vec<&ResultRow> = report.rows(&comparison.operation).collect();
         if !rows.is_empty() {
             text.print_line(&table(comparison, &rows, &mut signs));
             text.print_line("");
@@ -99,8 +98,7 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
 
 /// Returns the table with a row per structure and a column per order.
 fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> String {
-    let operation = comparison.operation;
-    let first = format!("{operation}\nns per {}", operation.unit());
+    let first = format!("{}\nns per {}", comparison.operation, rows[0].per);
     let orders = Order::ALL.map(|order| right(order.name().replace('-', "-\n")));
     let mut header = vec![Cell::new(first)];
     header.extend(orders);

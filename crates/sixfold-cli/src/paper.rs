@@ -9,7 +9,7 @@
 //! ```
 
 use sixfold_report::{PaperFiles, ReportPage};
-use sixfold_study::Results;
+use sixfold_results::Results;
 
 use crate::failure::Failure;
 use crate::listed_folder::ListedFolder;

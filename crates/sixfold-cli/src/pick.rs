@@ -4,9 +4,10 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
 use sixfold_study::{
-    BreakEven, ElementKind, FEWEST_OF_A_WINNER, OwnBytes, OwnData, Part, PickReport, PickSettings,
-    Prediction, ProgramSettings, Ranked, StudyMesh, Suite, Trace, Workload,
+    ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
 
 use crate::arguments::{Pick, ReadFiles};
@@ -20,7 +21,7 @@ use crate::progress::Bar;
 use crate::signs::Signs;
 use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
 use crate::workloads::workload;
-use sixfold_study::numbers::{counted, duration, figure, grouped, rounded_down};
+use sixfold_results::numbers::{counted, duration, figure, grouped, rounded_down};
 
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
@@ -131,7 +132,7 @@ pub(crate) fn study_meshes(
 
 /// Describes the program's own data. Returns an empty text if the program has no data of its own.
 fn own_data(data: &OwnData) -> String {
-    let kinds = ElementKind::ALL.map(|kind| (kind.name(), data.of(kind)));
+    let kinds = ElementKind::ALL.map(|kind| (kind.name(), kind.own_bytes(data)));
     let described = kinds
         .iter()
         .filter(|(_, bytes)| *bytes != OwnBytes::default());

@@ -12,10 +12,11 @@ use std::time::{Duration, Instant};
 
 use clap::{CommandFactory, FromArgMatches};
 use sixfold::UnknownName;
-use sixfold_study::numbers::{bytes, counted, figure};
+use sixfold_results::numbers::{bytes, counted, figure};
+use sixfold_results::{Finding, PickReport, Results};
 use sixfold_study::{
-    ChildTask, Effort, Finding, Isolation, PickReport, ProgramSettings, Results, StudyMesh, Suite,
-    SuiteProgram, free_memory, serve_program,
+    ChildTask, Effort, Isolation, ProgramSettings, StudyMesh, Suite, SuiteProgram, free_memory,
+    serve_program,
 };
 
 use crate::arguments::{Programs, ReadFiles, ResultFiles};

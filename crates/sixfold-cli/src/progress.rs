@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sixfold_study::{HeapGuard, Policy, Progress};
+use sixfold_results::Policy;
+use sixfold_study::{HeapGuard, Progress};
 
 use crate::output::exit_without_drafts;
 use crate::text::{print_stderr, sanitize};

@@ -18,7 +18,7 @@ use crate::progress::StepBar;
 use crate::seams::without_seams;
 use crate::shape_check::check_shape;
 use crate::text::{TextOutput, figure, print_notice, sanitize};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 /// Minimum number of faces for a note about a structure that scans.
 const MIN_WARNED_FACES: usize = 1000;

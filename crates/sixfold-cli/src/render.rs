@@ -18,7 +18,7 @@ use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
 use crate::triangulate::print_crossing;
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     exit_on_interrupt();

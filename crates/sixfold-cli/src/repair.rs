@@ -18,7 +18,7 @@ use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::shape_check::check_faces;
 use crate::text::{TextOutput, WithNotices, print_notice, sanitize};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 /// The exit code if the written file does not keep the repair.
 const NOT_KEPT: u8 = 1;

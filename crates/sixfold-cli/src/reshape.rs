@@ -16,7 +16,7 @@ use crate::progress::Spinner;
 use crate::seams::without_seams;
 use crate::shape_check::{check_faces, check_shape};
 use crate::text::{TextOutput, print_notice, sanitize};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
     let smoothing = Smoothing {

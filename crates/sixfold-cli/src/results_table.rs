@@ -1,14 +1,15 @@
 //! The table of a study, with a row per operation and a column per backend.
 
 use comfy_table::{Cell, LineStyle, Table, TableStyle};
-use sixfold_study::{
-    BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing,
+use sixfold_results::{
+    BackendReport, ControlRow, FIRST_TIME_SHOWN, OperationGroup, Report, ResultRow, Standing,
 };
+use sixfold_study::Operation;
 
 use crate::signs::{Signs, right};
 use crate::tables::{stacked, unbroken};
 use crate::text::hanging_indent;
-use sixfold_study::numbers::figure;
+use sixfold_results::numbers::figure;
 
 /// The style of tables: two spaces between columns, and a line under the header.
 pub(crate) const STYLE: TableStyle =
@@ -106,15 +107,15 @@ fn table_of_backends(
     // Warnings and the table rows below which they are printed.
     let mut warnings: Vec<(usize, String)> = Vec::new();
 
-    for operation in Operation::ALL {
-        let rows: Vec<&ResultRow> = report.rows(operation).collect();
+    for operation in &report.run.operations {
+        let rows: Vec<&ResultRow> = report.rows(&operation.name).collect();
         if rows.is_empty() {
             continue; // left_out_notes has the reasons
         }
         let of = |backend: &BackendReport| rows.iter().find(|row| row.backend == backend.name);
-        let unit = UNITS.iter().find(|(unit, _)| *unit == operation.unit());
-        let unit = unit.map_or(operation.unit(), |(_, letter)| letter);
-        let mut line = vec![Cell::new(operation.name()), Cell::new(unit)];
+        let unit = UNITS.iter().find(|(unit, _)| *unit == operation.unit);
+        let unit = unit.map_or(operation.unit.as_str(), |(_, letter)| letter);
+        let mut line = vec![Cell::new(&operation.name), Cell::new(unit)];
         line.extend(columns.iter().map(|backend| {
             let text = match of(backend) {
                 Some(row) => figure_of(row, intervals, signs),
@@ -140,11 +141,11 @@ fn table_of_backends(
             }
         };
         below("ratio up to", UNSURE, &largest_ratio);
-        if operation == Operation::Build {
+        if operation.group == OperationGroup::Build {
             below("first time", FIRST_TIME, &first_time(&rows));
         }
         let row = table.row_count() - 1;
-        let warning = noise_warning(report, operation).filter(|_| is_first);
+        let warning = noise_warning(report, &operation.name).filter(|_| is_first);
         warnings.extend(warning.map(|warning| (row, warning)));
     }
     add_bytes(&mut table, columns, smallest, intervals, signs);
@@ -195,7 +196,7 @@ fn figure_below(figure_of: &dyn Fn(&ResultRow) -> Option<f64>, row: &ResultRow) 
 }
 
 /// Returns the warning below an operation if the two columns of the control differ.
-fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
+fn noise_warning(report: &Report, operation: &str) -> Option<String> {
     let control = report.control.as_ref()?;
     let is_same = |row: &&ControlRow| row.operation == operation;
     let row = control.operations.iter().find(is_same)?;

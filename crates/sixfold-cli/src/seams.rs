@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sixfold::repair::{Step, Weld, repair};
 use sixfold::{Creases, Facts, PolygonMesh};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 use crate::arguments::ReadFiles;
 use crate::mesh_files::shown;

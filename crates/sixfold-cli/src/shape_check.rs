@@ -9,7 +9,7 @@ use sixfold::spatial::{
     polygon_triangles,
 };
 use sixfold::{FaceId, PolygonMesh, VertexId, area_vector};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 use crate::arguments::ShapeCheck;
 use crate::text::{figure, print_notice};

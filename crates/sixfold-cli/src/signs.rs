@@ -1,8 +1,8 @@
 //! The signs of figures in tables: who is fastest, and how a figure was obtained.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::{figure, rounded_down};
-use sixfold_study::{Agreement, MeasuredTask, ResultRow, Standing};
+use sixfold_results::numbers::{figure, rounded_down};
+use sixfold_results::{Agreement, ResultRow, Standing};
 
 use crate::text::{hanging_indent, width};
 
@@ -49,7 +49,7 @@ impl Signs {
     }
 
     /// Formats the time per element with its signs, such as `*13.7`, `=~50,400` or `≥42,000`.
-    pub(crate) fn figure<T: MeasuredTask>(&mut self, row: &ResultRow<T>) -> String {
+    pub(crate) fn figure(&mut self, row: &ResultRow) -> String {
         let estimate = row.estimated_ns.zip(row.elements);
         let estimate = estimate.map(|(ns, elements)| ns / elements.max(1) as f64);
         let mut text = self.standing(row.standing);
@@ -146,7 +146,11 @@ mod tests {
             elements: Some(10),
             ns_per_element: Some(12_345.6),
             standing,
-            ..ResultRow::new("half-edge", Operation::Build)
+            ..ResultRow::new(
+                "half-edge",
+                Operation::Build.name(),
+                Operation::Build.unit(),
+            )
         }
     }
 

@@ -3,10 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use sixfold_study::{
-    BackendReport, Environment, Finding, Report, Run, RunSettings, Settings, StudyError, StudyMesh,
-    Timer,
-};
+use sixfold_results::{BackendReport, Environment, Finding, Report, Run, Timer};
+use sixfold_study::{Settings, StudyError, StudyMesh};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
@@ -20,7 +18,7 @@ use crate::paper;
 use crate::progress::Bar;
 use crate::results_table::results_table;
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {
@@ -110,7 +108,7 @@ fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failu
     let selected = settings.chosen_backends().map_err(Failure::usage)?;
     let inspection = sixfold_study::inspect(study_mesh, &selected);
     Ok(Report {
-        run: Run::start(RunSettings::of_study(settings)),
+        run: sixfold_study::start_run(settings.run_settings()),
         mesh: inspection.mesh,
         backends: inspection.backends,
         ..Report::default()

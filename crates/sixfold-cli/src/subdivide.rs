@@ -26,7 +26,7 @@ use crate::shape_check::check_faces;
 use crate::text::{TextOutput, sanitize};
 use forecast::Forecast;
 use limit::Limits;
-use sixfold_study::numbers::{counted, duration, figure, grouped};
+use sixfold_results::numbers::{counted, duration, figure, grouped};
 
 pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     exit_on_interrupt();

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::output::{Output, cannot_write};
 
-pub(crate) use sixfold_study::sanitize;
+pub(crate) use sixfold_results::sanitize;
 
 /// Width of text that is not printed on a terminal, in columns.
 pub(crate) const WIDTH: usize = 80;

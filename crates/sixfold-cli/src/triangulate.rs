@@ -6,7 +6,7 @@ use sixfold_study::StudyMesh;
 
 use crate::failure::Failure;
 use crate::text::print_notice;
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 /// Maximum number of listed faces.
 const SHOWN: usize = 5;

@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_study::{Effort, Policy, Settings, StudyError, StudyMesh, Timing, WhyRow, WhySettings};
+use sixfold_results::{Policy, WhyRow};
+use sixfold_study::{Effort, Settings, StudyError, StudyMesh, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
@@ -45,7 +46,7 @@ pub(crate) fn measure(
     effort: Option<Effort>,
     stop: &AtomicBool,
     bar: &Bar,
-) -> Result<sixfold_study::Why, Failure> {
+) -> Result<sixfold_results::Why, Failure> {
     settings.timing = effort.map(|effort| Timing { effort });
     let why = sixfold_study::why(study_mesh, &settings, stop, &mut |at| bar.show(at));
     bar.clear();
@@ -57,7 +58,7 @@ pub(crate) fn measure(
 
 /// Prints the answer, then the tables and their legend. There is a table for each relation; if there is
 /// only one backend, one table has all relations. If `detailed` is set, each relation has two tables.
-fn print(why: &sixfold_study::Why, detailed: bool, text: &mut TextOutput) {
+fn print(why: &sixfold_results::Why, detailed: bool, text: &mut TextOutput) {
     text.print_line("");
     text.print_list("- ", &why.sentences);
     text.print_list("! ", &why.warnings);

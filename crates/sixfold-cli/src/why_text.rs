@@ -1,8 +1,8 @@
 //! The tables of `sixfold why`: one per relation with a row per backend, or one with a row per relation if
 //! there is only one backend.
 
-use sixfold_study::numbers::{figure, grouped};
-use sixfold_study::{BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
+use sixfold_results::numbers::{figure, grouped};
+use sixfold_results::{BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
 
 use crate::column_table::{Column, column_table, short_figure};
 use crate::text::hanging_indent;

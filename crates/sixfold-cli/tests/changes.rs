@@ -123,7 +123,7 @@ fn files_without_common_results_are_refused_in_one_message() {
     run_ok(&sixfold, &fewer);
     for (file, message) in [
         ("half.json", "ends too early"),
-        ("old.json", "schemas 2 to 3: measure again"),
+        ("old.json", "reads schema 4: measure again"),
         ("foreign.json", "no `schema`"),
         ("words.json", "is not JSON, line 1"),
         ("pick.json", "nothing to compare"),

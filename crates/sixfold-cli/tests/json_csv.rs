@@ -93,7 +93,7 @@ pub(crate) fn parsed(text: &str) -> Value {
 /// backends by name.
 pub(crate) fn finding(text: &str) -> Value {
     let document = parsed(text);
-    assert_eq!(document["schema"], 3);
+    assert_eq!(document["schema"], 4);
     let findings = document["findings"].as_array().expect("a list");
     assert_eq!(findings.len(), 1, "{document:.200}");
     completed(&document, &findings[0])
@@ -213,7 +213,7 @@ fn an_inspection_writes_facts_and_verdicts() {
     let run = sixfold.run(&["inspect", "mesh.obj", "--json", "-"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let inspection = parsed(&run.stdout);
-    assert_eq!(inspection["schema"], 3);
+    assert_eq!(inspection["schema"], 4);
     assert_fields(&inspection["mesh"], &FACTS);
     assert_eq!(inspection["mesh"]["edges"], 6);
     assert_eq!(inspection["mesh"]["genus"], 0);

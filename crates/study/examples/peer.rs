@@ -19,9 +19,9 @@ use serde_json::json;
 use sixfold::io;
 use sixfold::subdivision::{BoundaryRule, Scheme};
 use sixfold::{Creases, PolygonMesh};
+use sixfold_results::{Policy, Time};
 use sixfold_study::{
-    Backend, BackendRunner, HeapGuard, MachineClock, Operation, Policy, SubdivisionJob, Time, Way,
-    timed,
+    Backend, BackendRunner, HeapGuard, MachineClock, Operation, SubdivisionJob, Way, timed,
 };
 
 /// Minimum time of a sample, in nanoseconds.

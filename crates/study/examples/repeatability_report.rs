@@ -20,10 +20,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use sixfold::{Relation, shapes};
-use sixfold_study::{
-    Environment, Operation, Report, ResultRow, Run, RunSettings, Settings, Standing, StudyMesh,
-    UNSEEN_DRIFT, study,
-};
+use sixfold_results::statistics::UNSEEN_DRIFT;
+use sixfold_results::{Environment, Report, ResultRow, Run, RunSettings, Standing};
+use sixfold_study::{Operation, Settings, StudyMesh, start_run, study};
 
 /// Minimum ratio of two backends whose order should be the same in all studies.
 const GAP: f64 = 1.1;
@@ -39,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "torus of 100,352 triangles, shuffled",
         shapes::shuffled(&torus, 1),
     );
-    let now = Run::start(RunSettings::default());
+    let now = start_run(RunSettings::default());
     let mut reports = Vec::new();
     let start = Instant::now();
     for run in 0..runs {
@@ -101,7 +100,10 @@ fn winners(reports: &[Report]) -> String {
     );
     for operation in Relation::ALL.map(Operation::Relation) {
         let mut named: BTreeMap<String, [usize; 2]> = BTreeMap::new();
-        for row in reports.iter().flat_map(|report| report.rows(operation)) {
+        for row in reports
+            .iter()
+            .flat_map(|report| report.rows(operation.name()))
+        {
             match row.standing {
                 Some(Standing::Best) => named.entry(row.backend.clone()).or_default()[0] += 1,
                 Some(Standing::Tied) => named.entry(row.backend.clone()).or_default()[1] += 1,
@@ -126,7 +128,7 @@ fn winners(reports: &[Report]) -> String {
 /// Returns the time of one backend in one operation, for each study.
 fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
     let of = |report: &Report| {
-        let row = report.rows(operation).find(|row| row.backend == backend)?;
+        let row = report.row(operation.name(), backend)?;
         row.median_ns
     };
     reports.iter().filter_map(of).collect()
@@ -195,7 +197,11 @@ fn differences(reports: &[Report]) -> String {
         for backend in &reports[0].backends {
             let rows: Vec<&ResultRow> = reports
                 .iter()
-                .filter_map(|report| report.rows(operation).find(|r| r.backend == backend.name))
+                .filter_map(|report| {
+                    report
+                        .rows(operation.name())
+                        .find(|r| r.backend == backend.name)
+                })
                 .collect();
             let ratios: Vec<f64> = rows.iter().filter_map(|row| row.ratio_to_best).collect();
             if ratios.is_empty() || median(&ratios) <= GAP {
@@ -220,7 +226,7 @@ fn seen_variances(reports: &[Report], operation: Operation, backend: &str) -> Ve
     /// distribution: a half-width consists of a seen and an unseen part.
     const QUANTILES: [f64; 2] = [2.570_582, 1.959_964];
     let of = |report: &Report| {
-        let row = report.rows(operation).find(|row| row.backend == backend)?;
+        let row = report.row(operation.name(), backend)?;
         let enough = row.samples >= 6 && !row.sampled;
         let half_width = (row.ci_high_ns? / row.ci_low_ns?).ln() / 2.0;
         let seen = half_width.powi(2) - (QUANTILES[1] * UNSEEN_DRIFT).powi(2);
@@ -279,7 +285,7 @@ fn coverage(reports: &[Report]) -> String {
                 // Ratios are comparable only between studies with the same best backend.
                 let best = |report: &Report| {
                     let best = report
-                        .rows(operation)
+                        .rows(operation.name())
                         .find(|row| row.ratio_to_best == Some(1.0));
                     best.map(|row| row.backend.clone())
                 };
@@ -288,7 +294,10 @@ fn coverage(reports: &[Report]) -> String {
                     if best(report) != usual {
                         continue;
                     }
-                    for row in report.rows(operation).filter(|row| row.sampled == scanning) {
+                    for row in report
+                        .rows(operation.name())
+                        .filter(|row| row.sampled == scanning)
+                    {
                         let itself = name != "the time" && Some(&row.backend) == usual.as_ref();
                         if let Some(interval) = of(row).filter(|_| !itself) {
                             rows.entry(&row.backend).or_default().push(interval);
@@ -342,7 +351,7 @@ fn coverage(reports: &[Report]) -> String {
 fn drift(reports: &[Report]) -> String {
     let ratios = |operation: Operation, backend: &str| -> Vec<f64> {
         let rows = reports.iter().filter_map(|report| {
-            let row = report.rows(operation).find(|row| row.backend == backend)?;
+            let row = report.row(operation.name(), backend)?;
             row.ratio_to_best
         });
         rows.collect()

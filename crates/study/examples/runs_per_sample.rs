@@ -16,7 +16,8 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
-use sixfold_study::{Backend, Clock, HeapGuard, MachineClock, Operation, Policy, Series};
+use sixfold_results::Policy;
+use sixfold_study::{Backend, Clock, HeapGuard, MachineClock, Operation, Series};
 use sixfold_workload::{Access, Draw, Job, Route, Schedule, Task, built_in, prepare_mix};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];

@@ -3,7 +3,6 @@
 
 pub(crate) mod agreement;
 pub(crate) mod control;
-pub(crate) mod corrected;
 #[cfg(test)]
 mod cost;
 pub(crate) mod disturbance;
@@ -13,10 +12,9 @@ pub(crate) mod machine;
 pub(crate) mod measure;
 pub(crate) mod plan;
 pub(crate) mod plan_by_count;
-pub(crate) mod ranking;
+pub(crate) mod run;
 #[cfg(test)]
 pub(crate) mod simulated_machine;
-pub(crate) mod statistics;
 pub(crate) mod timer;
 pub(crate) mod trial;
 pub(crate) mod warnings;

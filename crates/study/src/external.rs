@@ -25,17 +25,16 @@ use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
 use sixfold::PolygonMesh;
 use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold_core::Counts;
 use tempfile::TempDir;
 
-use crate::results::rows::BackendReport;
-use crate::sanitize::sanitize;
 use program::{Handshake, Program};
+use sixfold_results::sanitize;
+use sixfold_results::{BackendReport, ExternalReport};
+use sixfold_results::{HeapReport, Policy};
 use sixfold_workload::TimedBackend;
-use sixfold_workload::pages::{HeapReport, Policy};
 use subject::ExternalSubject;
 
 /// Placeholder for the path of the mesh.
@@ -51,19 +50,6 @@ pub struct External {
     pub name: String,
     /// The program and its arguments; `{mesh}` stands for the path of an OBJ file.
     pub command: Vec<String>,
-}
-
-/// Facts about an external program.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct ExternalReport {
-    /// The program and its arguments, with `{mesh}` for the path of the mesh.
-    pub command: Vec<String>,
-    /// The library that the program measures, with its version.
-    pub library: Option<String>,
-    /// True if freed memory pages are kept for Sixfold's structures but not for this program.
-    /// Allocations of this program may then cause page faults.
-    #[serde(default)]
-    pub own_heap: bool,
 }
 
 /// The reason why a text does not describe an external program.

@@ -9,9 +9,9 @@ use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 use crate::refusal::Candidate;
-use crate::results::document::SCHEMA;
-use crate::results::json::write_json;
-use crate::results::rows::{BackendReport, MeshReport};
+use sixfold_results::SCHEMA;
+use sixfold_results::write_json;
+use sixfold_results::{BackendReport, MeshReport};
 use sixfold_workload::Backend;
 
 /// Number of bytes that are hashed at once.

@@ -7,8 +7,5 @@ pub(crate) mod neighbours;
 pub(crate) mod orders;
 pub(crate) mod pick;
 pub(crate) mod rows;
-mod slope;
 pub(crate) mod study;
 pub(crate) mod why;
-
-pub use slope::Slope;

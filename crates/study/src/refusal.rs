@@ -6,7 +6,7 @@ use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 use crate::inspect::StudyMesh;
-use crate::numbers::counted;
+use sixfold_results::numbers::counted;
 
 /// A mesh from which backends are built. The facts that explain refusals are computed once, for the
 /// first refusal.

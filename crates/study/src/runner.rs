@@ -9,11 +9,13 @@ use crate::engine::measure::{MAX_RUNS, untimed_runs};
 use crate::engine::plan::SHORTEST_SAMPLE_NS;
 use crate::labs::study::{StudyError, prepare};
 use crate::refusal::Candidate;
+use sixfold_results::Policy;
+use sixfold_results::Time;
 use sixfold_workload::Backend;
+use sixfold_workload::Clock;
 use sixfold_workload::Draw;
 use sixfold_workload::Operation;
-use sixfold_workload::pages::{self, HeapGuard, Policy};
-use sixfold_workload::{Clock, Time};
+use sixfold_workload::pages::{self, HeapGuard};
 use sixfold_workload::{Series, Task, TimedBackend, exceeds_second_level};
 
 /// A built backend that can be timed alone, with the same code as in a study.

@@ -6,10 +6,11 @@ use sixfold::{FaceId, MeshEdit, PolygonMesh, Representation};
 use sixfold_core::Counts;
 
 use crate::backend::Backend;
-use crate::clock::{Clock, Time};
+use crate::clock::Clock;
 use crate::edit_pass::EditPass;
 use crate::operation::Operation;
 use crate::series::Series;
+use sixfold_results::Time;
 
 /// A counter of all bytes that a program requests from its allocator. The program that installs the
 /// allocator implements this trait.

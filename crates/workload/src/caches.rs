@@ -6,39 +6,19 @@
 use std::fs;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use sixfold_results::Cache;
 
 /// The folder in which Linux describes the caches of the first processor.
 const CACHE_FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 
-/// A cache of a processor.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct Cache {
-    /// The level of the cache. The cache of level 1 is the nearest to the processor.
-    pub level: u8,
-    /// The content of the cache: `data`, `instruction`, or `unified` for data and instructions.
-    pub kind: String,
-    /// The size of the cache in bytes.
-    pub bytes: u64,
-    /// The number of processors that share the cache, if known.
-    pub shared_by: Option<usize>,
-}
-
-impl Cache {
-    /// Returns true if the cache holds data.
-    pub fn holds_data(&self) -> bool {
-        self.kind != "instruction"
-    }
-
-    /// Reads one cache. `file` returns the content of the file with the given name.
-    fn read(file: impl Fn(&str) -> Option<String>) -> Option<Self> {
-        Some(Self {
-            level: file("level")?.trim().parse().ok()?,
-            kind: file("type")?.trim().to_lowercase(),
-            bytes: parse_size(file("size")?.trim()).filter(|&bytes| bytes > 0)?,
-            shared_by: file("shared_cpu_list").and_then(|list| list_length(list.trim())),
-        })
-    }
+/// Reads one cache. `file` returns the content of the file with the given name.
+fn read_cache(file: impl Fn(&str) -> Option<String>) -> Option<Cache> {
+    Some(Cache {
+        level: file("level")?.trim().parse().ok()?,
+        kind: file("type")?.trim().to_lowercase(),
+        bytes: parse_size(file("size")?.trim()).filter(|&bytes| bytes > 0)?,
+        shared_by: file("shared_cpu_list").and_then(|list| list_length(list.trim())),
+    })
 }
 
 /// Returns the caches of the first processor, sorted by level, then by kind. Returns an empty list
@@ -47,20 +27,13 @@ pub fn caches() -> Vec<Cache> {
     let Ok(entries) = fs::read_dir(CACHE_FOLDER) else {
         return Vec::new();
     };
-    let cache = |folder: &Path| Cache::read(|name| fs::read_to_string(folder.join(name)).ok());
+    let cache = |folder: &Path| read_cache(|name| fs::read_to_string(folder.join(name)).ok());
     let mut caches: Vec<Cache> = entries
         .flatten()
         .filter_map(|entry| cache(&entry.path()))
         .collect();
     caches.sort_by(|a, b| (a.level, &a.kind).cmp(&(b.level, &b.kind)));
     caches
-}
-
-/// Returns the size of the last-level data cache in bytes, if known.
-pub fn last_level_bytes(caches: &[Cache]) -> Option<u64> {
-    let data = caches.iter().filter(|cache| cache.holds_data());
-    data.max_by_key(|cache| cache.level)
-        .map(|cache| cache.bytes)
 }
 
 /// Returns the size of the data cache of `level` in bytes, if known.
@@ -96,11 +69,13 @@ fn list_length(text: &str) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
+    use sixfold_results::last_level_bytes;
+
     use super::*;
 
     fn cache(files: &[(&str, &str)]) -> Option<Cache> {
         let file = |name: &str| files.iter().find(|(n, _)| *n == name);
-        Cache::read(|name| file(name).map(|(_, text)| format!("{text}\n")))
+        read_cache(|name| file(name).map(|(_, text)| format!("{text}\n")))
     }
 
     #[test]

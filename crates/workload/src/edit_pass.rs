@@ -4,8 +4,8 @@ use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::{EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation};
 
 use crate::backend::Backend;
-use crate::clock::Time;
 use crate::series::{ReusedCopies, Series};
+use sixfold_results::Time;
 
 sixfold_core::named! {
     /// A series of edits over a whole triangle mesh.

@@ -2,9 +2,9 @@
 
 use sixfold::QueryCost;
 
-use crate::clock::Time;
 use crate::operation::Operation;
 use crate::series::Series;
+use sixfold_results::Time;
 
 /// The work that one run of a job does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -36,13 +36,13 @@ mod workload_file;
 pub use allocation::{Allocated, AllocationCounter, MAX_SCANNED_FACES, NotCounted};
 pub use backend::{Backend, Prepared};
 pub use built_in::{built_in, built_ins};
-pub use caches::{Cache, caches, last_level_bytes};
-pub use clock::{Clock, MachineClock, Time, timed};
+pub use caches::caches;
+pub use clock::{Clock, MachineClock, timed};
 pub use draw::{Draw, Side};
 pub use edit_pass::{EditPass, Editor, Edits, PreparedEditor};
 pub use heap::{Heap, MeasuredMemory};
 pub use job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
-pub use memory_speed::{BufferSpeed, MemorySpeed};
+pub use memory_speed::MemorySpeed;
 pub use mix::{
     EditPlaceError, MixBackend, MixRefusal, PreparedMix, Route, Schedule, prepare_mix, tabulate,
 };
@@ -52,12 +52,12 @@ pub use program::{
     RefineProgram, Suite, SuiteProgram, Visits, WalkProgram,
 };
 pub use read_probe::{CACHE_LINES, LINE_BYTES, REACH};
-pub use reads::{MAX_READS, Reads, ReadsObserver, SCAN_SAMPLE, TableReads};
+pub use reads::{MAX_READS, ReadsObserver, SCAN_SAMPLE};
 pub use series::{CacheFlusher, MIN_TIMED_NS, Series, Start, exceeds_second_level};
 pub use single_edit::SingleEdit;
 pub use subdivide::patch;
 pub use subdivision_job::{PreparedRefiner, Refiner, SubdivisionJob, Way};
 pub use sweeps::field_sum;
 pub use trace::{Trace, TraceError};
-pub use workload::{Access, Action, Amount, OwnBytes, OwnData, ParseAmountError, Part, Workload};
+pub use workload::{Access, Action, Amount, ParseAmountError, Part, Workload};
 pub use workload_file::WorkloadError;

@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::clock::{Clock, timed};
 use crate::read_probe::LINE_BYTES;
+use sixfold_results::BufferSpeed;
 
 /// Sizes of the buffers in bytes. The first buffer is half of a small first-level cache. The last
 /// buffer is larger than the last-level cache of most machines.
@@ -43,17 +44,6 @@ const DEPENDENT_READS: usize = 1 << 16;
 
 /// Number of words in a cache line.
 const WORDS: usize = LINE_BYTES / size_of::<u64>();
-
-/// The read speed of a buffer of one size.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct BufferSpeed {
-    /// The size of the buffer in bytes.
-    pub bytes: usize,
-    /// The bandwidth of sequential reads, in GB/s.
-    pub gb_per_s: f64,
-    /// The time of one dependent read, in nanoseconds.
-    pub latency_ns: f64,
-}
 
 /// The speeds at which this machine reads buffers of different sizes.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -188,7 +178,7 @@ fn shortest_ns(clock: &dyn Clock, mut series: impl FnMut()) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clock::Time;
+    use sixfold_results::Time;
 
     #[test]
     fn the_cycle_goes_through_every_line_once() {

@@ -2,6 +2,7 @@
 
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{PolygonMesh, QueryCost, Relation};
+use sixfold_results::{OperationGroup, OperationInfo, OwnBytes, OwnData};
 
 use crate::edit_pass::EditPass;
 use crate::subdivision_job::{SubdivisionJob, Way};
@@ -22,6 +23,15 @@ impl ElementKind {
     /// Returns the index of the kind in [`ElementKind::ALL`].
     pub const fn index(self) -> usize {
         self as usize
+    }
+
+    /// Returns the data of a program for the elements of this kind.
+    pub const fn own_bytes(self, data: &OwnData) -> OwnBytes {
+        match self {
+            Self::Vertex => data.vertex,
+            Self::Edge => data.edge,
+            Self::Face => data.face,
+        }
     }
 
     /// Returns the kind of the elements at which `relation` is queried.
@@ -197,20 +207,36 @@ impl Operation {
         }
     }
 
-    /// Returns the group of the operation in lists: `build`, `queries`, `traversals`, `edits` or
-    /// `subdivision`.
-    pub const fn group(self) -> &'static str {
+    /// Returns the group of the operation in lists.
+    pub const fn group(self) -> OperationGroup {
         match self {
-            Self::Build => "build",
-            Self::Relation(_) | Self::Circulate | Self::AllQueries => "queries",
+            Self::Build => OperationGroup::Build,
+            Self::Relation(_) | Self::Circulate | Self::AllQueries => OperationGroup::Queries,
             Self::FaceBarycenter
             | Self::VertexNormal
             | Self::VvSmooth
             | Self::EdgeLength
             | Self::Boundary
-            | Self::FfBfs => "traversals",
-            Self::EditPass(_) => "edits",
-            Self::CatmullClark(_) | Self::Loop(_) => "subdivision",
+            | Self::FfBfs => OperationGroup::Traversals,
+            Self::EditPass(_) => OperationGroup::Edits,
+            Self::CatmullClark(_) | Self::Loop(_) => OperationGroup::Subdivision,
+        }
+    }
+
+    /// Returns what results say about the operation.
+    pub fn info(self) -> OperationInfo {
+        let (scheme, method) = match self {
+            Self::CatmullClark(method) => (Some("Catmull–Clark"), Some(method)),
+            Self::Loop(method) => (Some("Loop"), Some(method)),
+            _ => (None, None),
+        };
+        OperationInfo {
+            name: self.name().into(),
+            group: self.group(),
+            about: self.about().into(),
+            unit: self.unit().into(),
+            scheme: scheme.map(Into::into),
+            method: method.map(|method| method.name().into()),
         }
     }
 
@@ -401,11 +427,10 @@ mod tests {
 
     #[test]
     fn every_operation_and_unit_is_described() {
-        let mut groups: Vec<&str> = Operation::ALL.map(Operation::group).into();
+        let mut groups = Vec::from(Operation::ALL.map(Operation::group));
         groups.sort_unstable();
         groups.dedup();
-        let expected = ["build", "edits", "queries", "subdivision", "traversals"];
-        assert_eq!(groups, expected);
+        assert_eq!(groups, OperationGroup::ALL);
         for operation in Operation::ALL {
             let about = operation.about();
             let same = |other: &&Operation| other.about() == about;

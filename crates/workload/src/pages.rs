@@ -3,7 +3,7 @@
 //! An allocator returns large freed blocks to the kernel or keeps them. The choice depends on the
 //! previous work of the program. If a returned page is used again, the processor raises a page
 //! fault. Page faults can take longer than the measured operation. Therefore each measurement sets
-//! a [`Policy`] for freed pages. [`Policy::Kept`] keeps freed pages in the process, so that timed
+//! a [`Policy`](sixfold_results::Policy) for freed pages. [`Policy::Kept`](sixfold_results::Policy::Kept) keeps freed pages in the process, so that timed
 //! runs after a warm-up have no page faults. [`release_pages`] returns the freed pages to the
 //! kernel, to measure a first run.
 //!
@@ -14,13 +14,13 @@
 //! the last guard is dropped, malloc gets [its settings](HeapGuard#settings-that-are-restored)
 //! back. While a guard exists, a guard with another policy is refused ([`HeapPolicyConflict`]).
 //!
-//! [`Policy::Kept`] is implemented for the GNU C library with `mallopt`. With this policy, the
+//! [`Policy::Kept`](sixfold_results::Policy::Kept) is implemented for the GNU C library with `mallopt`. With this policy, the
 //! allocator maps no block separately, never shrinks the heap, and uses one heap for all threads. A
 //! program must acquire the guard before it starts its first thread, because the C library reads
 //! the number of heaps only once. If a thread has its own heap, pages of this heap stay in the
 //! process, and [`release_pages`] returns only some of these pages.
 //!
-//! On other platforms, and with other allocators, the active policy is [`Policy::System`].
+//! On other platforms, and with other allocators, the active policy is [`Policy::System`](sixfold_results::Policy::System).
 //! [`HeapGuard::report`] returns the active policy.
 
 mod guard;
@@ -29,43 +29,10 @@ use std::hint::black_box;
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use guard::{HeapGuard, HeapPolicyConflict};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
-use serde::{Deserialize, Serialize};
-
-pub use guard::{HeapGuard, HeapPolicyConflict};
-
-sixfold_core::named! {
-    /// A rule for the memory pages of freed blocks.
-    #[derive(Default)]
-    pub enum Policy: "heap policy" {
-        /// Freed pages stay in the process. Later allocations use the freed pages again, without
-        /// page faults.
-        #[default]
-        Kept = "kept",
-        /// The allocator decides by its own rules which freed pages it keeps.
-        System = "system",
-    }
-}
-
-/// The state of the heap during a measurement.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct HeapReport {
-    /// The active policy. It can differ from the requested policy.
-    pub policy: Policy,
-    /// The reason why the requested policy is not active; `None` if the requested policy is active.
-    #[serde(default)]
-    pub reason: Option<String>,
-    /// The name and version of the allocator, such as `glibc 2.36`.
-    pub allocator: String,
-    /// Size of a memory page in bytes, if known.
-    pub page_bytes: Option<u64>,
-    /// The mode of transparent huge pages, if known: `always`, `madvise` or `never`.
-    pub transparent_huge_pages: Option<String>,
-    /// True if page faults are counted.
-    pub counts_faults: bool,
-}
 
 /// Minimum page size of all platforms, in bytes.
 const MIN_PAGE_BYTES: usize = 4096;
@@ -400,6 +367,8 @@ mod platform {
 
 #[cfg(test)]
 mod tests {
+    use sixfold_results::Policy;
+
     use super::*;
 
     #[test]

@@ -2,79 +2,17 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::{Deserialize, Serialize};
 use sixfold::{MeshQuery, QueryCost, Relation};
 use sixfold_core::Measured;
 
 use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
+use sixfold_results::{Reads, TableReads};
 
 /// Number of elements in a sample. The elements of a sample are evenly spaced.
 pub const SCAN_SAMPLE: usize = 16;
 /// Maximum number of table rows that a query may read, as a mean over all elements. If the queries
 /// of a relation read more rows, only [`SCAN_SAMPLE`] elements are queried.
 pub const MAX_READS: u64 = 256;
-
-/// The table reads of one relation. The relation is queried at all elements in the order of the
-/// structure, or at a sample of evenly spaced elements.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Reads {
-    /// The queried relation.
-    pub relation: Relation,
-    /// Number of elements at which the relation can be queried.
-    pub elements: u64,
-    /// Number of elements at which the relation was queried.
-    #[serde(rename = "asked")]
-    pub queried: u64,
-    /// True if only a sample of evenly spaced elements was queried. If true, values per query are
-    /// means over the sample.
-    pub sampled: bool,
-    /// Mean number of results per query.
-    pub answers: f64,
-    /// Mean number of table rows that a query reads. A row that a query reads twice counts twice.
-    pub reads: f64,
-    /// Mean number of bytes that a query reads. A byte that a query reads twice counts once.
-    pub bytes: f64,
-    /// Mean number of cache lines that a query touches. A cache line that a query touches twice
-    /// counts once.
-    pub lines: f64,
-    /// Number of table rows that are read to list the elements, divided by the number of elements.
-    pub listing_reads: f64,
-    /// Mean number of cache lines per element that a small simulated cache fetches from memory. The
-    /// lines that are read to list the elements are included.
-    pub fetched: f64,
-    /// Mean number of jumps per element. A jump is the fetch of a cache line that is not near any
-    /// line in the simulated cache.
-    pub jumps: f64,
-    /// Number of distinct cache lines that are touched while the elements are listed and queried.
-    /// If only a sample of the elements is queried, the number does not include lines that only
-    /// queries of other elements would touch.
-    pub sweep_lines: u64,
-    /// Estimate of the bytes per element that must be moved from memory. If all elements are
-    /// queried, each touched cache line counts once for the whole mesh. If only a sample is
-    /// queried, each cache line counts once for each query that touches the line.
-    pub moved_bytes: f64,
-    /// The number of rows that a query reads from each table.
-    pub tables: Vec<TableReads>,
-}
-
-impl Reads {
-    /// Returns the bytes of all distinct cache lines that are touched while the elements are
-    /// queried.
-    pub fn sweep_bytes(&self) -> usize {
-        usize::try_from(self.sweep_lines).map_or(usize::MAX, |lines| lines * LINE_BYTES)
-    }
-}
-
-/// The reads of one table by the queries of one relation.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct TableReads {
-    /// The name of the table.
-    pub table: String,
-    /// Bytes of one row of the table.
-    pub row_bytes: usize,
-    /// Mean number of rows of the table that a query reads.
-    pub reads: f64,
-}
 
 /// A receiver for the counts of table reads, one relation after the other.
 pub trait ReadsObserver {

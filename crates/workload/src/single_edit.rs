@@ -4,10 +4,10 @@ use sixfold::{Edit, MeshEdit, PolygonMesh, Refusal, Representation};
 use sixfold_core::EditOf;
 
 use crate::backend::Backend;
-use crate::clock::Time;
 use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{independent_faces, prepare_edit};
 use crate::series::{ReusedCopies, Series};
+use sixfold_results::Time;
 
 /// An edit that is done at several faces of a closed triangle mesh.
 ///

@@ -2,8 +2,6 @@
 
 mod index;
 mod queries;
-mod tasks;
 
 pub use index::{Built, IndexKind, KINDS, LIST};
-pub use queries::{Input, MAX_QUERIES, QueryPoints, Triangle, Vertex};
-pub use tasks::{EIGHT, SpatialTask};
+pub use queries::{Input, MAX_QUERIES, Triangle, Vertex};

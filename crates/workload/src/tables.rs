@@ -6,8 +6,8 @@ use sixfold::{EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Represent
 use sixfold_core::RowId;
 use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
 
-use crate::clock::Time;
 use crate::series::{Series, time_making};
+use sixfold_results::Time;
 
 /// The name of the tables in rankings.
 pub(crate) const TABLES: &str = "relation-tables";

@@ -5,7 +5,6 @@ use std::hint::black_box;
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
 use crate::backend::Backend;
-use crate::clock::Time;
 use crate::draw::{Draw, Side};
 use crate::edit_pass::{EditPass, PreparedEditor};
 use crate::job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
@@ -14,6 +13,7 @@ use crate::series::{ReusedCopies, Series, Start, exceeds_second_level, time_maki
 use crate::subdivide::{patch, subdivide};
 use crate::subdivision_job::SubdivisionJob;
 use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
+use sixfold_results::Time;
 
 /// A structure built from `polygons`, with storage for outputs and with handles of the drawn
 /// elements.

@@ -9,6 +9,7 @@ use sixfold::{Edit, Relation};
 use sixfold_core::Counts;
 
 use crate::operation::{ElementKind, Operation};
+use sixfold_results::{OwnData, WorkloadPart, WorkloadReport};
 
 /// The operations that a program performs on a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -33,50 +34,6 @@ pub struct Workload {
     pub own_data: OwnData,
     /// The operations with their weights. At least one weight is greater than 0.
     pub mix: Vec<Part>,
-}
-
-/// The data that a program keeps for each vertex, edge and face. They are read and written in the
-/// access order of the workload, so that they share the caches with the structure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct OwnData {
-    /// The data of a vertex.
-    #[serde(default)]
-    pub vertex: OwnBytes,
-    /// The data of an edge.
-    #[serde(default)]
-    pub edge: OwnBytes,
-    /// The data of a face.
-    #[serde(default)]
-    pub face: OwnBytes,
-}
-
-/// The number of bytes that one visit of an element reads and writes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct OwnBytes {
-    /// Bytes that a visit reads.
-    #[serde(default)]
-    pub read: u32,
-    /// Bytes that a visit writes.
-    #[serde(default)]
-    pub written: u32,
-}
-
-impl OwnData {
-    /// Returns the data of the elements of one kind.
-    pub const fn of(&self, kind: ElementKind) -> OwnBytes {
-        match kind {
-            ElementKind::Vertex => self.vertex,
-            ElementKind::Edge => self.edge,
-            ElementKind::Face => self.face,
-        }
-    }
-
-    /// Returns true if there are no data.
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 /// One operation of a mix, with its weight.
@@ -369,6 +326,28 @@ impl Action {
 sixfold_core::named!(impl Action: "operation" in Action::all());
 
 impl Workload {
+    /// Returns what results say about the workload.
+    pub fn report(&self) -> WorkloadReport {
+        let amount = |amount: Amount| match amount {
+            Amount::Number(number) => sixfold_results::Amount::Number(number),
+            per => sixfold_results::Amount::PerElement(per.to_string()),
+        };
+        let mix = self.mix.iter().map(|part| WorkloadPart {
+            action: part.action.to_string(),
+            weight: amount(part.weight),
+        });
+        WorkloadReport {
+            name: self.name.clone(),
+            summary: self.summary.clone(),
+            access: self.access.to_string(),
+            operations: amount(self.operations),
+            rebuilds: self.rebuilds,
+            own_ns: self.own_ns,
+            own_data: self.own_data,
+            mix: mix.collect(),
+        }
+    }
+
     /// Returns the number of operations on one mesh with the given element counts; at least 1.
     pub fn operations_on(&self, counts: &Counts) -> f64 {
         self.operations.value_on(counts).max(1.0)

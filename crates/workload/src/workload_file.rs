@@ -8,7 +8,8 @@ use sixfold::UnknownName;
 use toml::Spanned;
 
 use crate::operation::ElementKind;
-use crate::workload::{Access, Action, Amount, NumberOrText, OwnData, Part, Workload};
+use crate::workload::{Access, Action, Amount, NumberOrText, Part, Workload};
+use sixfold_results::OwnData;
 
 /// An error in a workload file, with the number of the line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -157,7 +158,7 @@ fn checked_data(
 ) -> Result<OwnData, WorkloadError> {
     let own_data = *data.get_ref();
     for kind in ElementKind::ALL {
-        let bytes = own_data.of(kind);
+        let bytes = kind.own_bytes(&own_data);
         let most = bytes.read.max(bytes.written);
         if most > MAX_OWN_BYTES {
             let kind = kind.name();
@@ -220,7 +221,7 @@ mod tests {
 
     use super::*;
     use crate::built_in::{built_in, built_ins};
-    use crate::workload::OwnBytes;
+    use sixfold_results::OwnBytes;
 
     fn parse(text: &str) -> Result<Workload, WorkloadError> {
         Workload::parse("mine", "mine.toml", text)

@@ -1,10 +1,11 @@
 //! Tests of the heap policy, which applies to the whole process. The tests are a separate program,
 //! and hold a lock, so that no other test has a guard at the same time.
 
+use sixfold_results::Policy;
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use sixfold_workload::pages::{self, HeapGuard, Policy};
+use sixfold_workload::pages::{self, HeapGuard};
 
 fn alone() -> MutexGuard<'static, ()> {
     static TESTS: Mutex<()> = Mutex::new(());

@@ -1,11 +1,12 @@
 //! Shared code of the programs that make reports.
 
-use sixfold_study::{HeapGuard, Policy, Run, RunSettings};
+use sixfold_results::{Policy, Run, RunSettings};
+use sixfold_study::HeapGuard;
 
 /// Describes the machine, and keeps freed memory pages from now on.
 pub(crate) fn start() -> Run {
     let heap = HeapGuard::acquire(Policy::Kept).expect("the only guard");
-    let mut run = Run::start(RunSettings::default());
+    let mut run = sixfold_study::start_run(RunSettings::default());
     run.environment.heap = Some(heap.hold_until_exit());
     run
 }

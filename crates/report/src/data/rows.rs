@@ -2,7 +2,7 @@
 //! have the columns of the types in this file.
 
 use serde::Serialize;
-use sixfold_study::{
+use sixfold_results::{
     Change, Figure as TimeRow, GrowthReport, NeighboursReport, OrdersReport, PickReport, Pool,
     Report, Verdict, Why,
 };
@@ -41,7 +41,7 @@ pub(crate) fn neighbours(report: &NeighboursReport) -> String {
 /// One row of the mean over several meshes.
 #[derive(Serialize)]
 struct PooledRow<'r> {
-    operation: &'static str,
+    operation: &'r str,
     backend: &'r str,
     meshes: usize,
     ratio_to_best: f64,
@@ -58,7 +58,7 @@ struct PooledRow<'r> {
 /// Returns the means over several meshes.
 pub(crate) fn pooled(pool: &Pool) -> String {
     let rows = pool.all().iter().map(|row| PooledRow {
-        operation: row.operation.name(),
+        operation: &row.operation,
         backend: &row.backend,
         meshes: row.meshes,
         ratio_to_best: row.ratio_to_best,

@@ -1,8 +1,8 @@
 //! The tables of `sixfold memory`: the bytes of each structure, and the bytes that operations
 //! allocate.
 
-use sixfold_study::numbers::grouped;
-use sixfold_study::{Audit, BackendAudit, OperationBytes};
+use sixfold_results::numbers::grouped;
+use sixfold_results::{Audit, BackendAudit, OperationBytes};
 
 use crate::figure::{Table, TitledTable};
 
@@ -87,15 +87,15 @@ fn allocations(holding: &[&BackendAudit]) -> Table {
     let operations = holding.iter().flat_map(|entry| &entry.operations);
     let mut seen = Vec::new();
     for OperationBytes { operation, .. } in operations {
-        if seen.contains(operation) {
+        if seen.contains(&operation) {
             continue;
         }
-        seen.push(*operation);
+        seen.push(operation);
         let of = |entry: &&BackendAudit| {
             let mut counts = entry.operations.iter();
             cell(counts.find(|counted| counted.operation == *operation))
         };
-        let mut line = vec![operation.name().to_owned()];
+        let mut line = vec![operation.clone()];
         line.extend(holding.iter().map(of));
         if line[1..].iter().any(|cell| cell != "–") {
             table.row(line);

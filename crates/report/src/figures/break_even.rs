@@ -1,8 +1,8 @@
 //! A figure that shows after how many operations a structure has saved more time than building it
 //! took.
 
-use sixfold_study::numbers::{counted, duration, grouped};
-use sixfold_study::{Operation, PickReport, Report, ResultRow};
+use sixfold_results::numbers::{counted, duration, grouped};
+use sixfold_results::{PickReport, Report, ResultRow};
 
 use super::INPUT_BACKEND;
 use crate::Picture;
@@ -13,9 +13,12 @@ use crate::data::own_columns;
 use crate::data::rows::BreakEvenRow;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
 
+/// The operation that visits each element by queries of all relations.
+const ALL_QUERIES: &str = "all_queries";
+
 /// The operation that is repeated in a study, with a line for each structure.
 struct Repeated<'s> {
-    operation: Operation,
+    operation: &'static str,
     lines: Vec<Line<'s>>,
     /// The largest number of repetitions.
     max_count: f64,
@@ -24,14 +27,9 @@ struct Repeated<'s> {
 impl<'s> Repeated<'s> {
     /// Chooses the operation with the most queries.
     fn new(study: &'s Report) -> Option<Self> {
-        let candidates = [
-            Operation::AllQueries,
-            Operation::VertexNormal,
-            Operation::VvSmooth,
-            Operation::Circulate,
-        ];
-        let is_comparable = |operation: &Operation| {
-            let rows = study.rows(*operation);
+        let candidates = [ALL_QUERIES, "vertex_normal", "vv_smooth", "circulate"];
+        let is_comparable = |operation: &&str| {
+            let rows = study.rows(operation);
             rows.filter(|row| row.median_ns.is_some()).count() > 1
         };
         let operation = candidates.into_iter().find(is_comparable)?;
@@ -67,7 +65,7 @@ impl<'s> Repeated<'s> {
         let lines: Vec<Line<'s>> = times.iter().map(line).collect();
         let max_count = match operation {
             // A pass over the whole mesh.
-            Operation::AllQueries => {
+            ALL_QUERIES => {
                 let elements = times.iter().find_map(|(row, ..)| row.elements);
                 elements.map_or(1e6, |elements| elements as f64).max(10.0)
             }
@@ -90,24 +88,23 @@ fn build(study: &Report, row: &ResultRow) -> Option<f64> {
     if row.backend == INPUT_BACKEND {
         return Some(0.0);
     }
-    let mut builds = study.rows(Operation::Build);
-    let build = builds.find(|build| build.backend == row.backend)?;
+    let build = study.row("build", &row.backend)?;
     build.first_ns.or(build.median_ns)
 }
 
 /// Returns the time of one repetition. Building pays long before a pass over all queries, and each visit of
 /// one is as good as any other, so one visit is a repetition of these.
 fn run(row: &ResultRow) -> Option<f64> {
-    match row.operation {
-        Operation::AllQueries => row.median_ns.and(row.ns_per_element),
+    match row.operation.as_str() {
+        ALL_QUERIES => row.median_ns.and(row.ns_per_element),
         _ => row.median_ns,
     }
 }
 
 /// Returns what is counted: one and several of it.
-fn units(operation: Operation) -> [&'static str; 2] {
+fn units(operation: &str) -> [&'static str; 2] {
     match operation {
-        Operation::AllQueries => ["visit", "visits"],
+        ALL_QUERIES => ["visit", "visits"],
         _ => ["run", "runs"],
     }
 }
@@ -129,13 +126,13 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         id: format!("{id_prefix}break-even"),
         note: "`sixfold pick` measures this for a workload.".into(),
         axis: &match operation {
-            Operation::AllQueries => "elements visited by queries of all nine relations".to_owned(),
+            ALL_QUERIES => "elements visited by queries of all nine relations".to_owned(),
             _ => format!("runs of {operation}"),
         },
         unit: &format!("one {one}"),
         units: many,
         subject: &study.mesh.name,
-        repeated: operation.name(),
+        repeated: operation,
         max_count,
     };
     curves.draw(&lines, command)
@@ -145,7 +142,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
 /// the mesh, with the largest number of visits for each, and the structure for more. `None` if the study has no
 /// queries of all relations.
 pub(crate) fn sequence(study: &Report) -> Option<(String, Vec<(String, usize)>)> {
-    let repeated = Repeated::new(study).filter(|one| one.operation == Operation::AllQueries)?;
+    let repeated = Repeated::new(study).filter(|one| one.operation == ALL_QUERIES)?;
     let (last, steps) = envelope(&repeated.lines, repeated.max_count)?;
     let steps = steps
         .into_iter()

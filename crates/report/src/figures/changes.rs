@@ -1,7 +1,7 @@
 //! The figure of the changes beyond the noise: a row for each time, the largest change first.
 
-use sixfold_study::Change;
-use sixfold_study::numbers::{counted, grouped, times};
+use sixfold_results::Change;
+use sixfold_results::numbers::{counted, grouped, times};
 
 use super::ratio_axis::{self, FARTHEST};
 use crate::Picture;

@@ -1,8 +1,8 @@
 //! Figures of the growth of times with the size of the mesh. On logarithmic axes, the slope of a
 //! line is the exponent of growth.
 
-use sixfold_study::numbers::{bytes, duration, grouped};
-use sixfold_study::{CacheLimit, Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
+use sixfold_results::numbers::{bytes, duration, grouped};
+use sixfold_results::{CacheLimit, Fit, GrowthReport, OperationInfo, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};
 use crate::Picture;
@@ -19,12 +19,12 @@ const UPWARDS: [f64; 2] = [256.0, 44.0];
 
 /// Draws a panel for each operation. All panels have the same axes.
 pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Option<Figure> {
-    let of = |operation: &Operation| -> Vec<&Fit> {
+    let of = |operation: &OperationInfo| -> Vec<&Fit> {
         let fits = report.fits.iter();
-        fits.filter(|fit| fit.operation == *operation).collect()
+        fits.filter(|fit| fit.operation == operation.name).collect()
     };
-    let operations = Operation::ALL.into_iter().filter(|o| !of(o).is_empty());
-    let operations: Vec<Operation> = operations.collect();
+    let operations = report.run.operations.iter().filter(|o| !of(o).is_empty());
+    let operations: Vec<&OperationInfo> = operations.collect();
     let curves = report
         .fits
         .iter()
@@ -58,8 +58,8 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
     let mut panels = Vec::new();
     for operation in &operations {
         let fits = of(operation);
-        panels.push(panel(report, *operation, &fits, &axes));
-        add_times_and_slopes(&mut table, &report.sizes, *operation, &fits);
+        panels.push(panel(report, operation, &fits, &axes));
+        add_times_and_slopes(&mut table, &report.sizes, operation, &fits);
     }
     let title = format!("Total time as the mesh grows: {}", report.shape);
     let limit = last_cache(report).map_or(String::new(), |limit| {
@@ -99,9 +99,14 @@ fn last_cache(report: &GrowthReport) -> Option<&CacheLimit> {
     report.cache_limits.iter().max_by_key(|limit| limit.level)
 }
 
-fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes<'_>) -> Canvas {
+fn panel(
+    report: &GrowthReport,
+    operation: &OperationInfo,
+    fits: &[&Fit],
+    axes: &Axes<'_>,
+) -> Canvas {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
-    canvas.text([0.0, 14.0], operation.name(), Style::new(14).bold(true));
+    canvas.text([0.0, 14.0], &operation.name, Style::new(14).bold(true));
     axes.draw(&mut canvas);
     let curves = fits.iter().map(|fit| {
         let points = points(&report.sizes, fit).into_iter().map(|point| {
@@ -155,13 +160,13 @@ fn between(points: &[[f64; 2]], x: f64) -> Option<[f64; 2]> {
 fn add_times_and_slopes(
     table: &mut Option<Table>,
     sizes: &[SizeReport],
-    operation: Operation,
+    operation: &OperationInfo,
     fits: &[&Fit],
 ) {
     let names = fits.iter().map(|fit| fit.backend.as_str());
     let header = ["", "faces"].into_iter().chain(names);
     let table = table.get_or_insert_with(|| Table::new(header));
-    let what = format!("{}, {}", operation.name(), per_unit(operation.unit()));
+    let what = format!("{}, {}", &operation.name, per_unit(&operation.unit));
     for size in sizes {
         let cell = |fit: &&Fit| {
             let each = find_row(size, fit).and_then(each_ns);
@@ -180,7 +185,7 @@ fn add_times_and_slopes(
     for (name, select) in slopes {
         let cells: Vec<String> = fits.iter().map(|fit| slope_cell(select(fit))).collect();
         if cells.iter().any(|cell| cell != "–") {
-            table.row([vec![operation.name().into(), name.into()], cells].concat());
+            table.row([vec![operation.name.clone(), name.into()], cells].concat());
         }
     }
 }

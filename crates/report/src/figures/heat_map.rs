@@ -1,6 +1,6 @@
 //! The heat map: all structures and operations in one figure, with their ratios.
 
-use sixfold_study::numbers::times;
+use sixfold_results::numbers::times;
 
 use crate::Picture;
 use crate::canvas::{Canvas, Style};

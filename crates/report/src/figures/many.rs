@@ -4,8 +4,8 @@ mod distribution;
 mod groups;
 mod outliers;
 
-use sixfold_study::numbers::{counted, grouped, list};
-use sixfold_study::{Overall, Pool, Purpose, Report, Results, leaders};
+use sixfold_results::numbers::{counted, grouped, list};
+use sixfold_results::{Overall, Pool, Purpose, Report, Results, leaders};
 
 use super::{facts, file_name, heat_map, labs, memory, ranking, recorded_command, slug};
 use crate::data::rows;

@@ -1,8 +1,8 @@
 //! A figure with one stacked bar for each structure. The parts of a bar are the bytes of the tables
 //! of the structure.
 
-use sixfold_study::numbers::{bytes, figure as shown, grouped};
-use sixfold_study::{BackendReport, Report};
+use sixfold_results::numbers::{bytes, figure as shown, grouped};
+use sixfold_results::{BackendReport, Report};
 
 use crate::Picture;
 use crate::canvas::{Canvas, Style, text_width};
@@ -89,16 +89,14 @@ fn parts(column: &BackendReport) -> Vec<Part> {
     let mut tables: Vec<_> = column.tables.iter().collect();
     tables.sort_by_key(|part| part.table != POSITIONS);
     let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));
-    let part = |(number, table): (usize, &&_)| -> Part {
-        let table: &sixfold_study::TableBytes = table;
-        Part {
-            name: table.table.to_string(),
-            rows: table.rows,
-            bytes: table.bytes,
-            colour: table_colour(first + number),
-        }
-    };
-    tables.iter().enumerate().map(part).collect()
+    let tables = tables.into_iter().enumerate();
+    let parts = tables.map(|(number, table)| Part {
+        name: table.table.to_string(),
+        rows: table.rows,
+        bytes: table.bytes,
+        colour: table_colour(first + number),
+    });
+    parts.collect()
 }
 
 /// Draws the parts of a bar. `y` is the upper end of the bar, and `scale` the pixels of a byte.

@@ -1,8 +1,9 @@
 //! A figure of the effect that the order of the elements in memory has on the times of each
 //! structure.
 
-use sixfold_study::numbers::{duration, figure as shown, shown_ratio, times};
-use sixfold_study::{Comparison, FEWEST_OF_A_WINNER, OrdersReport, ResultRow};
+use sixfold_results::numbers::{duration, figure as shown, shown_ratio, times};
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_results::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::Picture;
@@ -23,6 +24,8 @@ const APART: f64 = 4.0;
 /// The times of one backend in all orders, relative to its best order.
 struct Line<'r> {
     backend: &'r str,
+    /// The kind of the visited elements.
+    per: &'r str,
     /// The orders, in the order of the list.
     points: Vec<Option<Point>>,
 }
@@ -39,7 +42,7 @@ struct Point {
 
 /// Draws a panel for each operation. All panels have one scale.
 pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Option<Figure> {
-    let names: Vec<&str> = report.orders.iter().map(|order| order.name()).collect();
+    let names: Vec<&str> = report.orders.iter().map(String::as_str).collect();
     let header = ["", "structure"].into_iter().chain(names.iter().copied());
     let mut table = Table::new(header.chain(["worst / best", "95 %"]));
     let comparisons = report.comparisons.iter();
@@ -94,12 +97,12 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
 }
 
 fn lines<'r>(report: &'r OrdersReport, comparison: &Comparison) -> Vec<Line<'r>> {
-    let rows: Vec<&ResultRow> = report.rows(comparison.operation).collect();
+    let rows: Vec<&ResultRow> = report.rows(&comparison.operation).collect();
     let lines = rows.chunk_by(|a, b| a.backend == b.backend).map(|rows| {
         let times = rows.iter().filter_map(|row| row.ns_per_element);
         let best = times.fold(f64::INFINITY, f64::min);
         let points = report.orders.iter().map(|order| {
-            let row = rows.iter().find(|row| row.case == order.name());
+            let row = rows.iter().find(|row| row.case == *order);
             let row = row.filter(|row| row.ratio_to_best.is_some())?;
             let ns = row.ns_per_element?;
             Some(Point {
@@ -110,6 +113,7 @@ fn lines<'r>(report: &'r OrdersReport, comparison: &Comparison) -> Vec<Line<'r>>
         });
         Line {
             backend: &rows[0].backend,
+            per: &rows[0].per,
             points: points.collect(),
         }
     });
@@ -126,9 +130,9 @@ fn row(comparison: &Comparison, line: &Line<'_>) -> Vec<String> {
         .map(|point| point.ratio)
         .fold(1.0, f64::max);
     let interval = factor.and_then(|factor| factor.ci_low.zip(factor.ci_high));
-    let operation = comparison.operation;
+    let operation = &comparison.operation;
     let mut cells = vec![
-        format!("{}, {}", operation.name(), per_unit(operation.unit())),
+        format!("{operation}, {}", per_unit(line.per)),
         line.backend.to_owned(),
     ];
     let times = line.points.iter();
@@ -151,7 +155,7 @@ fn panel(
     let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64);
     canvas.text(
         [0.0, 14.0],
-        comparison.operation.name(),
+        &comparison.operation,
         Style::new(14).bold(true),
     );
     let mut x = 0.0;
@@ -167,7 +171,7 @@ fn panel(
         let label = Style::new(11).middle().colour(FAINT_COLOUR);
         canvas.text([x, HEAD - 8.0], &format!("{tick} ×"), label);
     }
-    let per = per_unit(comparison.operation.unit());
+    let per = per_unit(lines.first().map_or("", |line| line.per));
     for (number, line) in lines.iter().enumerate() {
         let y = HEAD + ROW * number as f64 + 6.0;
         canvas.text(

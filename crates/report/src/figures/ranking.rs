@@ -1,8 +1,8 @@
 //! Rankings: a panel for each operation, with the time of each structure or external program relative
 //! to the fastest. All panels have one scale.
 
-use sixfold_study::numbers::{duration, grouped, shown_ratio, times};
-use sixfold_study::{NeighboursReport, PickReport, SpatialTask, Standing};
+use sixfold_results::numbers::{duration, grouped, shown_ratio, times};
+use sixfold_results::{NeighboursReport, PickReport, SpatialTask, Standing};
 
 use super::per_unit;
 use crate::Picture;
@@ -87,7 +87,7 @@ pub(super) fn from_neighbours(
     command: &str,
 ) -> Option<Figure> {
     let panels = SpatialTask::ALL.into_iter().filter_map(|task| {
-        let cells = report.rows(task).map(|row| Cell {
+        let cells = report.rows(task.name()).map(|row| Cell {
             ratio: row.ratio_to_best,
             interval: row
                 .ratio_ci_low

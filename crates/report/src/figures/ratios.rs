@@ -1,7 +1,7 @@
 //! The figure of all ratios of a comparison: a line for each backend.
 
-use sixfold_study::Change;
-use sixfold_study::numbers::{counted, figure as shown, grouped, times};
+use sixfold_results::Change;
+use sixfold_results::numbers::{counted, figure as shown, grouped, times};
 
 use super::changes::{cut, widest};
 use super::ratio_axis;

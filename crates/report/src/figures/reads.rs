@@ -1,7 +1,7 @@
 //! The table of the reads of queries, without times.
 
-use sixfold_study::Why;
-use sixfold_study::numbers::figure;
+use sixfold_results::Why;
+use sixfold_results::numbers::figure;
 
 use crate::figure::{Table, TitledTable};
 

@@ -2,8 +2,8 @@
 //! Lines show the speed of memory. If the mark of a query is on a line, the query can become faster
 //! only by moving fewer bytes.
 
-use sixfold_study::numbers::{bytes, duration, figure as shown};
-use sixfold_study::{Bound, BufferSpeed, Timed, Why, WhyRow};
+use sixfold_results::numbers::{bytes, duration, figure as shown};
+use sixfold_results::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
 use crate::Picture;

@@ -1,8 +1,8 @@
 //! The tables of the page: the structures by kind of work, all operations, and plain tables.
 
 use maud::{Markup, html};
-use sixfold_study::Quotient;
-use sixfold_study::numbers::counted;
+use sixfold_results::Quotient;
+use sixfold_results::numbers::counted;
 
 use crate::figure::Table;
 use crate::matrix::{Cell, Line, Matrix, Source};
@@ -68,7 +68,7 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
 
 /// Returns the table of all operations, with the controls that the script shows.
 pub(super) fn operations_table(matrix: &Matrix) -> Markup {
-    let mut groups: Vec<&str> = matrix.lines.iter().map(|line| line.group).collect();
+    let mut groups: Vec<&str> = matrix.lines.iter().map(|line| line.group.name()).collect();
     groups.dedup();
     let has = |source| {
         let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
@@ -118,7 +118,7 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
                 tbody {
                     @for (place, line) in matrix.lines.iter().enumerate() {
                         @let starts = place > 0 && matrix.lines[place - 1].group != line.group;
-                        tr.first-of-group[starts] data-operation=(line.name) data-group=(line.group) {
+                        tr.first-of-group[starts] data-operation=(line.name) data-group=(line.group.name()) {
                             th scope="row" { (line.name) small { (line.about) ", per " (line.unit) } }
                             @for cell in &line.cells { (operation_cell(line, cell)) }
                         }

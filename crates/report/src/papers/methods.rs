@@ -3,10 +3,10 @@
 
 use std::fmt::Write as _;
 
-use sixfold_study::numbers::{bytes, counted, grouped};
-use sixfold_study::{
-    CacheState, Environment, FEWEST_OF_A_WINNER, Figure as TimeRow, Finding, Policy, Report,
-    Results, Run, Status,
+use sixfold_results::numbers::{bytes, counted, grouped};
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_results::{
+    CacheState, Environment, Figure as TimeRow, Finding, Policy, Report, Results, Run, Status,
 };
 
 use crate::data::dates;
@@ -168,7 +168,7 @@ fn meshes(results: &Results) -> Vec<String> {
             format!(" from {first} to {last} faces")
         });
         let sizes = counted(growth.sizes.len(), "size", "sizes");
-        let (shape, order) = (&growth.shape, growth.order);
+        let (shape, order) = (&growth.shape, &growth.order);
         format!("The growth with the mesh size was measured on the shape {shape} in {sizes}{ends}, in the order {order}.")
     });
     let sizes: Vec<String> = sizes.collect();

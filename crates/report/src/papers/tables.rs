@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use sixfold_study::numbers::{figure as shown, rounded_down};
-use sixfold_study::{Operation, Pool, Report, ResultRow, Results};
+use sixfold_results::numbers::{figure as shown, rounded_down};
+use sixfold_results::{OperationInfo, Pool, Pooled, Report, ResultRow, Results};
 
 use crate::figures::facts;
 use crate::markdown::escape;
@@ -94,20 +94,17 @@ pub(super) fn tables(results: &Results) -> Vec<RatioTable> {
 fn of_study(study: &Report, number: usize) -> RatioTable {
     let columns = study.backends.iter().filter(|backend| backend.holds);
     let columns: Vec<String> = columns.map(|backend| backend.name.clone()).collect();
-    let row = |operation: Operation| RatioRow {
-        name: operation.name().to_owned(),
+    let row = |operation: &OperationInfo| RatioRow {
+        name: operation.name.clone(),
         cells: columns
             .iter()
-            .map(|column| {
-                let row = study.rows(operation).find(|row| row.backend == *column)?;
-                cell(study, row)
-            })
+            .map(|column| cell(study, study.row(&operation.name, column)?))
             .collect(),
     };
     RatioTable {
         label: format!("mesh-{number}"),
         caption: format!("{}: {} {READING}", study.mesh.name, facts(&study.mesh)),
-        rows: with_cells(Operation::ALL.into_iter().map(row)),
+        rows: with_cells(study.run.operations.iter().map(row)),
         columns,
     }
 }
@@ -123,7 +120,7 @@ fn cell(study: &Report, row: &ResultRow) -> Option<Cell> {
         ));
     }
     let bound = row.median_ns.is_none().then_some(row.estimated_ns?)?;
-    let mut rows = study.rows(row.operation);
+    let mut rows = study.rows(&row.operation);
     let best = rows.find(|row| row.ratio_to_best == Some(1.0))?.median_ns?;
     // A bound below the time of the fastest shows nothing.
     (bound > best).then(|| Cell::bound(bound / best))
@@ -131,9 +128,7 @@ fn cell(study: &Report, row: &ResultRow) -> Option<Cell> {
 
 fn means(pool: &Pool) -> RatioTable {
     let columns = pool.compared.clone();
-    let row = |operation: Operation| {
-        let rows = pool.all().iter().filter(|row| row.operation == operation);
-        let rows: Vec<_> = rows.collect();
+    let row = |rows: &[Pooled]| {
         let measured = rows.iter().filter(|row| row.estimated == 0);
         let smallest = measured
             .map(|row| row.ratio_to_best)
@@ -147,7 +142,7 @@ fn means(pool: &Pool) -> RatioTable {
             })
         };
         RatioRow {
-            name: operation.name().to_owned(),
+            name: rows[0].operation.clone(),
             cells: columns.iter().map(cell).collect(),
         }
     };
@@ -155,7 +150,11 @@ fn means(pool: &Pool) -> RatioTable {
     RatioTable {
         label: "means".into(),
         caption: format!("Means over {meshes} meshes. {READING_MEANS}"),
-        rows: with_cells(Operation::ALL.into_iter().map(row)),
+        rows: with_cells(
+            pool.all()
+                .chunk_by(|a, b| a.operation == b.operation)
+                .map(row),
+        ),
         columns,
     }
 }

@@ -107,7 +107,7 @@ pub(crate) struct Compare {
     #[arg(long)]
     pub(crate) relative: bool,
     /// Ignore ratios below this threshold
-    #[arg(long, value_name = "RATIO", default_value_t = sixfold_study::DRIFT, value_parser = noise)]
+    #[arg(long, value_name = "RATIO", default_value_t = sixfold_results::DRIFT, value_parser = noise)]
     pub(crate) noise: f64,
     /// Show all measurements, including unchanged ones
     #[arg(long)]

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use sixfold::UnknownName;
-use sixfold_study::{QueryPoints, neighbour_indices};
+use sixfold_results::QueryPoints;
+use sixfold_study::neighbour_indices;
 
 use super::{EffortArgs, ReadFiles, ResultFiles, seed};
 

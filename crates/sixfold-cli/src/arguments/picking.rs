@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold_study::{Need, Policy};
+use sixfold_results::{Need, Policy};
 
 use super::{EffortArgs, ReadFiles, ResultFiles, backend, seed};
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Parser;
-use sixfold_study::Policy;
+use sixfold_results::Policy;
 
 use super::picking::bytes;
 use super::{EffortArgs, ReadFiles, ResultFiles, duration, seed};

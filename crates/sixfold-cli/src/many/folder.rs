@@ -16,7 +16,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sixfold_report::ReportPage;
-use sixfold_study::{Finding, Results, RunSettings, Settings, sha256_of};
+use sixfold_results::{Finding, Results, RunSettings};
+use sixfold_study::{Settings, sha256_of};
 
 use super::meshes::Mesh;
 use crate::arguments::Study;
@@ -25,7 +26,7 @@ use crate::listed_folder::remove;
 use crate::load::file_hash;
 use crate::output::{Output, cannot_write};
 use crate::text::print_notice;
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 pub(super) struct Folder {
     path: PathBuf,
@@ -65,7 +66,7 @@ impl Folder {
         let wanted = RunSettings {
             triangulate: arguments.triangulate,
             strict: arguments.strict,
-            ..RunSettings::of_study(settings)
+            ..settings.run_settings()
         };
         for (file, text) in files {
             let Ok(saved) = Results::read_json(&text) else {

@@ -4,9 +4,8 @@ use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold::UnknownName;
-use sixfold_study::{
-    Finding, GrowthSettings, Operation, Results, Settings, StudyMesh, WhySettings,
-};
+use sixfold_results::{Finding, Results};
+use sixfold_study::{GrowthSettings, Operation, Settings, StudyMesh, WhySettings};
 
 use super::folder::Folder;
 use crate::failure::Failure;

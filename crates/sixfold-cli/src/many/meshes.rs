@@ -11,7 +11,7 @@ use sixfold::io::Format;
 use crate::failure::Failure;
 use crate::mesh_files::shown;
 use crate::text::sanitize;
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {

@@ -1,8 +1,8 @@
 //! The table of the results of many meshes.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::{counted, figure, rounded_down};
-use sixfold_study::{Overall, Pool, Pooled, Purpose};
+use sixfold_results::numbers::{counted, figure, rounded_down};
+use sixfold_results::{Overall, Pool, Pooled, Purpose};
 
 use crate::tables::{stacked, unbroken};
 use crate::text::hanging_indent;
@@ -20,11 +20,11 @@ pub(super) fn pooled_table(pool: &Pool, bold: bool) -> String {
     let table = |columns: &[&str]| {
         let mut table = unbroken(header("× the best\non average", columns), bold);
         for rows in pool.all().chunk_by(|a, b| a.operation == b.operation) {
-            let name = rows[0].operation.name();
+            let name = &rows[0].operation;
             let fewer = rows[0].meshes < meshes;
             let mut line = vec![Cell::new(match fewer {
                 true => format!("{name} ({})", rows[0].meshes),
-                false => name.to_owned(),
+                false => name.clone(),
             })];
             for column in columns {
                 let row = rows.iter().find(|row| row.backend == *column);
@@ -63,7 +63,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
                 let rows: Vec<&Overall> = rows.collect();
                 // The backends of a purpose are sorted from the fastest to the slowest.
                 let Some(best) = rows.first() else { continue };
-                let mut line = vec![Cell::new(format!("  {}", purpose.name().to_lowercase()))];
+                let mut line = vec![Cell::new(format!("  {}", purpose.title().to_lowercase()))];
                 line.extend(columns.iter().map(|column| {
                     let row = rows.iter().find(|row| row.backend == **column);
                     let Some(row) = row else {

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-use sixfold_study::numbers::{counted, duration};
+use sixfold_results::numbers::{counted, duration};
 use sixfold_study::{ProgramSettings, RecordedProgram, Suite, record_program};
 
 use crate::arguments::Programs;

@@ -1,5 +1,5 @@
 use sixfold::{Facts, PolygonMesh, structure_infos};
-use sixfold_study::{Agreement, Control, MeshReport, Refusal, RefusalKind, Run};
+use sixfold_results::{Agreement, Control, MeshReport, Refusal, RefusalKind, Run};
 
 use super::*;
 use crate::left_out::left_out_notes;
@@ -37,13 +37,13 @@ fn row(name: &str, operation: &str, median_ns: f64, standing: Standing) -> Resul
         standing: Some(standing),
         ratio_to_best: Some(1.0),
         samples: 9,
-        ..ResultRow::new(name, operation)
+        ..ResultRow::new(name, operation.name(), operation.unit())
     }
 }
 
 fn control(operation: &str, [ratio, low, high]: [f64; 3]) -> ControlRow {
     ControlRow {
-        operation: operation.parse().expect("a name"),
+        operation: operation.into(),
         ratio,
         ci_low: Some(low),
         ci_high: Some(high),
@@ -71,13 +71,16 @@ fn report() -> Report {
     (left_out.estimated_ns, left_out.by_name_only) = (Some(1.4e9), true);
     let refusal = |operation: &str, reason: &str| Refusal {
         backend: "polygon-soup".into(),
-        operation: operation.parse().expect("a name"),
+        operation: operation.into(),
         kind: RefusalKind::Impossible,
         reason: reason.into(),
     };
     let mesh = PolygonMesh::default();
     Report {
-        run: Run::default(),
+        run: Run {
+            operations: Operation::ALL.map(Operation::info).into(),
+            ..Run::default()
+        },
         mesh: MeshReport {
             name: "fixed".into(),
             facts: Facts::from_polygons(&mesh),

@@ -7,7 +7,7 @@ use sixfold_study::Backend;
 
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use sixfold_study::numbers::{bytes, counted};
+use sixfold_results::numbers::{bytes, counted};
 
 /// Bytes per edge of the sums in a pass over the faces. Without rows for edges, the sums are in a
 /// hash map.

@@ -10,7 +10,7 @@ use sixfold::{FaceVertexMesh, MeshQuery, Point, PolygonMesh, Representation};
 use crate::failure::Failure;
 use crate::mesh_files::MeshOutput;
 use crate::text::sanitize;
-use sixfold_study::numbers::counted;
+use sixfold_results::numbers::counted;
 
 /// A result with its vertices at their limit positions.
 pub(super) struct Limits {

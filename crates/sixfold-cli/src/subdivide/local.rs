@@ -19,7 +19,7 @@ use crate::progress::Spinner;
 use crate::seams::without_seams;
 use crate::shape_check::check_faces;
 use crate::text::{TextOutput, print_notice, sanitize};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 use super::check_tags;
 use super::forecast::check_memory;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 use sixfold_explain::{Record, RecordColumn, Records, Refused};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 use crate::arguments::Tables;
 use crate::column_table::{Column, column_table};

@@ -13,7 +13,7 @@ use sixfold::PolygonMesh;
 use sixfold_explain::{
     BuiltMesh, Cost, EditByName, ElementName, ExplainError, Read, Refused, Step, Trace,
 };
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 use crate::arguments::{self, Explained};
 use crate::column_table::{Column, column_table};

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use sixfold::{Point, PolygonMesh};
 
 use crate::engine::measure::Entry;
-use crate::results::rows::Agreement;
+use sixfold_results::Agreement;
 use sixfold_workload::Clock;
 use sixfold_workload::Operation;
 use sixfold_workload::field_sum;

@@ -1,9 +1,9 @@
 //! The control: one backend that is measured twice, to find the noise.
 
 use crate::engine::measure::Entry;
-use crate::engine::ranking::{NO_DIFFERENCE, ratio};
-use crate::engine::statistics::Median;
-use crate::results::rows::{Control, ControlRow};
+use sixfold_results::ranking::ratio;
+use sixfold_results::statistics::Median;
+use sixfold_results::{Control, ControlRow};
 use sixfold_workload::Operation;
 
 /// Compares the two columns of `backend`: the subjects `first` and `second`.
@@ -30,7 +30,7 @@ pub(crate) fn control(
         let known = |ratio: &Median| ratio.value.is_finite() && ratio.value > 0.0;
         if let Some(ratio) = ratio.filter(known) {
             operations.push(ControlRow {
-                operation,
+                operation: operation.name().into(),
                 ratio: ratio.value,
                 ci_low: ratio.interval.map(|[low, _]| low),
                 ci_high: ratio.interval.map(|[_, high]| high),
@@ -46,12 +46,4 @@ pub(crate) fn control(
         typical,
         worst,
     })
-}
-
-/// Returns the maximum ratio that is noise: the difference of the control in this operation, at
-/// least [`NO_DIFFERENCE`].
-pub(crate) fn noise(control: Option<&Control>, operation: Operation) -> f64 {
-    let rows = control.map_or(&[][..], |control| &control.operations);
-    let row = rows.iter().find(|row| row.operation == operation);
-    row.map_or(1.0, ControlRow::difference).max(NO_DIFFERENCE)
 }

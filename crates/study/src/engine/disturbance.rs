@@ -8,11 +8,11 @@
 //! within limits. A disturbed sample does not count if there are enough undisturbed samples. The
 //! fixed work does not depend on the backend, so the method prefers no backend.
 
+use sixfold_results::statistics::DISTURBED;
 use std::hint::black_box;
 
-use sixfold_workload::{Clock, Time, timed};
-
-use crate::engine::statistics::MIN_SAMPLES;
+use sixfold_results::Time;
+use sixfold_workload::{Clock, timed};
 
 /// Maximum number of times a sample is taken again.
 const MAX_RETAKEN: u32 = 3;
@@ -20,10 +20,6 @@ const MAX_RETAKEN: u32 = 3;
 const WORDS: usize = 2048;
 /// Number of passes over the words in one reference run. A reference run takes about 10 µs.
 const PASSES: usize = 12;
-/// Maximum slowdown of an undisturbed machine, as a ratio of times. A lower value would also detect
-/// changes of the processor frequency. These last longer than a round and affect all backends
-/// equally.
-pub(crate) const DISTURBED: f64 = 1.3;
 /// The quantile of all reference times that counts as the undisturbed time.
 const UNDISTURBED: f64 = 0.05;
 /// Maximum wait for an undisturbed moment before a sample, in nanoseconds.
@@ -36,11 +32,6 @@ const FOR_DISTURBED_AT_FIRST: f64 = 0.01;
 const FOR_DISTURBED: f64 = 0.4;
 /// Part of the budget for samples taken again because of page faults.
 const FOR_FAULTS: f64 = 0.1;
-/// Minimum part of undisturbed samples. If there are fewer, or fewer than [`MIN_SAMPLES`], all
-/// samples count. In the first case, the machine is usually in the state that the detector calls
-/// disturbed. Leaving out most samples would make the medians less certain without making them more
-/// alike.
-const MIN_UNDISTURBED: f64 = 0.5;
 
 /// Does a number of passes of the fixed work.
 pub(crate) type ReferenceWork<'w> = Box<dyn Fn(usize) + 'w>;
@@ -221,22 +212,11 @@ pub(crate) struct TakenSample<T> {
     pub(crate) disturbed: bool,
 }
 
-/// Returns the samples that count. These are the undisturbed samples if they are at least half of
-/// all samples and enough for a narrow interval, else all samples.
-pub(crate) fn undisturbed<T: Copy>(samples: &[T], slowdowns: &[f64]) -> Vec<T> {
-    let quiet = samples.iter().zip(slowdowns);
-    let quiet = quiet.filter(|(_, slowdown)| **slowdown <= DISTURBED);
-    let quiet: Vec<T> = quiet.map(|(sample, _)| *sample).collect();
-    let needed = (MIN_UNDISTURBED * samples.len() as f64).max(MIN_SAMPLES as f64);
-    match quiet.len() as f64 >= needed {
-        true => quiet,
-        false => samples.to_vec(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::Mutex;
+
+    use sixfold_results::statistics::undisturbed;
 
     use super::*;
 

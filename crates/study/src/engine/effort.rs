@@ -3,6 +3,7 @@
 use std::num::NonZeroU32;
 use std::time::Duration;
 
+use sixfold_results::RunSettings;
 use sixfold_workload::Clock;
 
 /// How much a measurement does.
@@ -34,6 +35,15 @@ impl Effort {
         match self {
             Self::Budget(_) => None,
             Self::Rounds(rounds) => Some(rounds),
+        }
+    }
+
+    /// Returns the settings of a run with this effort. All other settings have their defaults.
+    pub fn run_settings(self) -> RunSettings {
+        RunSettings {
+            budget_s: self.budget().map(|budget| budget.as_secs_f64()),
+            rounds: self.rounds(),
+            ..RunSettings::default()
         }
     }
 

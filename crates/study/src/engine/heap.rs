@@ -1,11 +1,11 @@
 //! The heap of the measurements, and protection against running out of memory.
 
-use serde::{Deserialize, Serialize};
-use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, Policy};
+use sixfold_results::{CacheState, CachesReport, HeapReport, Policy};
+use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict};
 use sixfold_workload::{CacheFlusher, Start};
 use sysinfo::{MemoryRefreshKind, System};
 
-use crate::numbers::bytes;
+use sixfold_results::numbers::bytes;
 
 /// Part of all memory that must stay free.
 const MIN_FREE: f64 = 0.05;
@@ -14,32 +14,6 @@ const MIN_FREE: f64 = 0.05;
 const KEPT_FACTOR: u64 = 2;
 /// Divisor of the resident memory that gives the number of bytes to touch in advance.
 const RESERVE_PART: u64 = 4;
-
-sixfold_core::named! {
-    /// The state of the processor caches when a sample (a timed series of runs) begins.
-    #[derive(Default)]
-    pub enum CacheState: "cache state" {
-        /// The caches keep the data of the previous runs.
-        #[default]
-        Warm = "warm",
-        /// The caches hold other data than the mesh. With cold caches, only one run is timed at
-        /// once.
-        Cold = "cold",
-    }
-}
-
-/// How the processor caches are prepared before each timed sample.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct CachesReport {
-    /// The state of the caches when a sample begins.
-    pub state: CacheState,
-    /// Number of bytes that are written before each sample to replace the content of the caches; 0
-    /// if the caches are warm.
-    pub written_bytes: usize,
-    /// Highest cache level whose content is replaced. `None` if the caches are warm or the level is
-    /// unknown.
-    pub defeats_level: Option<u8>,
-}
 
 /// The heap of a measurement. The heap policy ends when this value is dropped.
 pub(crate) struct Memory {

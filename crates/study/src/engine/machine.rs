@@ -4,9 +4,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::engine::disturbance::{ReferenceWork, reference_work};
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::heap::Memory;
 use sixfold_core::Counts;
-use sixfold_workload::pages::{HeapPolicyConflict, Policy};
+use sixfold_results::CacheState;
+use sixfold_results::Policy;
+use sixfold_workload::pages::HeapPolicyConflict;
 use sixfold_workload::{Clock, MachineClock, MemorySpeed, TimedBackend};
 
 /// What a lab takes from the machine on which it runs. In tests, this is a simulated machine.

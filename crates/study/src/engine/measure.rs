@@ -19,14 +19,14 @@ use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 
-use crate::engine::disturbance::{DisturbanceDetector, Verdict, undisturbed};
+use crate::engine::disturbance::{DisturbanceDetector, Verdict};
 use crate::engine::effort::Effort;
-use crate::engine::ranking::FEWEST_OF_A_WINNER;
-use crate::engine::statistics::Median;
 use crate::engine::trial::Trial;
-use crate::results::rows::RefusalKind;
+use sixfold_results::Time;
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_results::statistics::{Median, undisturbed};
+use sixfold_results::{RefusalKind, Samples};
 use sixfold_workload::Operation;
-use sixfold_workload::Time;
 use sixfold_workload::{
     Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
 };
@@ -100,6 +100,31 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
+    /// Returns the samples for the results; `None` if the entry was not sampled. `control` tells whether
+    /// the samples belong to the second copy of the control.
+    pub(crate) fn to_samples(&self, backend: &str, control: bool) -> Option<Samples> {
+        if self.samples.is_empty() {
+            return None;
+        }
+        let times = || self.samples.iter().map(|(_, time)| time);
+        Some(Samples {
+            case: String::new(),
+            backend: backend.to_owned(),
+            operation: self.name.to_owned(),
+            control,
+            rounds: self.samples.iter().map(|(round, _)| *round).collect(),
+            cpu_ns: times().map(|time| time.cpu_ns).collect(),
+            wall_ns: times().map(|time| time.wall_ns).collect(),
+            faults: times().map(|time| time.faults).collect(),
+            slowdowns: self.slowdowns.clone(),
+            first_ns: self
+                .first_times
+                .iter()
+                .map(|[first, _]| first.ns())
+                .collect(),
+        })
+    }
+
     /// Creates an entry for an operation that is not planned yet.
     pub(crate) fn new(subject: usize, operation: Operation) -> Self {
         Self {
@@ -490,6 +515,15 @@ fn groups(entries: &[Entry]) -> Vec<Vec<usize>> {
     let numbers: Vec<usize> = (0..entries.len()).collect();
     let same = |&a: &usize, &b: &usize| entries[a].job.task == entries[b].job.task;
     numbers.chunk_by(same).map(<[usize]>::to_vec).collect()
+}
+
+/// Returns the corrected time of each entry. Entries of the same task must be adjacent.
+pub(crate) fn corrected_entries(entries: &[Entry]) -> Vec<Option<f64>> {
+    let tasks = entries.chunk_by(|a, b| a.job.task == b.job.task);
+    let times = tasks.map(|group| group.iter().map(Entry::times).collect::<Vec<_>>());
+    times
+        .flat_map(|times| sixfold_results::corrected_times(&times))
+        .collect()
 }
 
 #[cfg(test)]

@@ -6,14 +6,17 @@ use std::time::Duration;
 
 use sixfold::QueryCost;
 use sixfold_core::Counts;
+use sixfold_results::Time;
 use sixfold_workload::{
-    Backend, Clock, Job, MemorySpeed, Operation, Run, Series, Start, Task, Time, TimedBackend,
+    Backend, Clock, Job, MemorySpeed, Operation, Run, Series, Start, Task, TimedBackend,
 };
 
 use crate::engine::disturbance::ReferenceWork;
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
-use sixfold_workload::pages::{HeapPolicyConflict, Policy};
+use sixfold_results::CacheState;
+use sixfold_results::Policy;
+use sixfold_workload::pages::HeapPolicyConflict;
 
 /// One run of a task on a whole mesh.
 #[derive(Clone, Copy, Debug)]

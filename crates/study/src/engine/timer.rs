@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use serde::{Deserialize, Serialize};
+use sixfold_results::Timer;
 use sixfold_workload::Clock;
 
 use crate::engine::measure::Entry;
@@ -10,77 +10,48 @@ use crate::engine::measure::Entry;
 /// Number of readings.
 const TRIALS: usize = 1001;
 
-/// The resolution and the overhead of the clock, measured at the start of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Timer {
-    /// The smallest observed step of the clock, in nanoseconds.
-    pub resolution_ns: f64,
-    /// The time for reading the clock, in nanoseconds. This time is subtracted from every measured
-    /// time.
-    pub overhead_ns: f64,
-    /// The uncertainty of `overhead_ns`, in nanoseconds. The time between two readings without work
-    /// is measured many times. The uncertainty is the largest of three differences:
-    /// between `overhead_ns` and the median of the measured times, between the 95 % quantile and the
-    /// median, and between `resolution_ns` and the median, which is large if most readings see no
-    /// step.
-    pub uncertainty_ns: f64,
-    /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.
-    pub largest_share: Option<f64>,
-    /// The shortest measured time of a sample, in nanoseconds; `None` if nothing was measured.
-    pub shortest_ns: Option<f64>,
+/// Reads `clock` repeatedly, without work between the readings.
+pub(crate) fn measure(clock: &dyn Clock) -> Timer {
+    let runs = black_box(1_u32);
+    let empty = || {
+        let start = clock.now();
+        for run in 0..runs {
+            black_box(run);
+        }
+        (clock.now() - start).ns()
+    };
+    let mut times: Vec<f64> = (0..TRIALS).map(|_| empty()).collect();
+    times.sort_by(f64::total_cmp);
+    let (usual, longest) = (times[TRIALS / 2], times[TRIALS * 95 / 100]);
+    let overhead_ns = clock.overhead().ns();
+    let mut steps = times.iter().copied().filter(|&ns| ns > 0.0);
+    let resolution_ns = steps.next().unwrap_or(0.0);
+    // The overhead may be as in this empty loop, or a reading may take longer.
+    let differences = [
+        (overhead_ns - usual).abs(),
+        longest - usual,
+        resolution_ns - usual,
+    ];
+    Timer {
+        resolution_ns,
+        overhead_ns,
+        uncertainty_ns: differences.into_iter().fold(0.0, f64::max),
+        largest_share: None,
+        shortest_ns: None,
+    }
 }
 
-impl Timer {
-    /// Reads `clock` repeatedly, without work between the readings.
-    pub(crate) fn measure(clock: &dyn Clock) -> Self {
-        let runs = black_box(1_u32);
-        let empty = || {
-            let start = clock.now();
-            for run in 0..runs {
-                black_box(run);
-            }
-            (clock.now() - start).ns()
-        };
-        let mut times: Vec<f64> = (0..TRIALS).map(|_| empty()).collect();
-        times.sort_by(f64::total_cmp);
-        let (usual, longest) = (times[TRIALS / 2], times[TRIALS * 95 / 100]);
-        let overhead_ns = clock.overhead().ns();
-        let mut steps = times.iter().copied().filter(|&ns| ns > 0.0);
-        let resolution_ns = steps.next().unwrap_or(0.0);
-        // The overhead may be as in this empty loop, or a reading may take longer.
-        let differences = [
-            (overhead_ns - usual).abs(),
-            longest - usual,
-            resolution_ns - usual,
-        ];
-        Self {
-            resolution_ns,
-            overhead_ns,
-            uncertainty_ns: differences.into_iter().fold(0.0, f64::max),
-            largest_share: None,
-            shortest_ns: None,
-        }
-    }
-
-    pub(crate) fn with_entries(self, entries: &[Entry]) -> Self {
-        let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
-        self.with_shortest(shortest.min_by(f64::total_cmp))
-    }
-
-    pub(crate) fn with_shortest(self, shortest_ns: Option<f64>) -> Self {
-        Self {
-            largest_share: shortest_ns.map(|ns| self.uncertainty_ns / ns),
-            shortest_ns,
-            ..self
-        }
-    }
+/// Adds the shortest sample of `entries`.
+pub(crate) fn with_entries(timer: Timer, entries: &[Entry]) -> Timer {
+    let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
+    timer.with_shortest(shortest.min_by(f64::total_cmp))
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::{AtomicU32, Ordering};
 
-    use sixfold_workload::Time;
+    use sixfold_results::Time;
 
     use super::*;
 
@@ -105,7 +76,7 @@ mod tests {
     fn a_slow_clock_is_exact_but_a_coarse_clock_is_not() {
         let timer = |tick_ns| {
             let readings = AtomicU32::new(0);
-            Timer::measure(&Ticks { readings, tick_ns }).with_shortest(Some(59_400.0))
+            measure(&Ticks { readings, tick_ns }).with_shortest(Some(59_400.0))
         };
         let slow = timer(1.0);
         assert_eq!((slow.resolution_ns, slow.overhead_ns), (600.0, 600.0));

@@ -14,7 +14,7 @@ use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Measurement, Progress, entries_of};
-use crate::results::rows::{Control, Samples};
+use sixfold_results::{Control, Samples};
 
 /// What a trial measures on: the mesh, the machine and the limits.
 pub(crate) struct Trial<'t> {
@@ -60,7 +60,7 @@ impl Measured {
         let of = |control: bool| {
             move |entry: &Entry| {
                 let backend = columns.subjects[entry.subject].name();
-                Samples::of_entry(entry, backend, control)
+                entry.to_samples(backend, control)
             }
         };
         let first = self.entries.iter().filter_map(of(false));

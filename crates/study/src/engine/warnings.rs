@@ -1,13 +1,12 @@
 //! Warnings about possible faults of the measurement, each with a remedy.
 
-use crate::engine::disturbance::DISTURBED;
-use crate::engine::ranking::FEWEST_OF_A_WINNER;
-use crate::engine::statistics::median;
-use crate::engine::timer::Timer;
-use crate::results::environment::Environment;
-use crate::results::rows::{Control, ResultRow, Samples};
-use crate::results::run::{Run, RunSettings};
-use sixfold_workload::pages::Policy;
+use sixfold_results::Environment;
+use sixfold_results::Policy;
+use sixfold_results::Timer;
+use sixfold_results::ranking::FEWEST_OF_A_WINNER;
+use sixfold_results::statistics::{DISTURBED, median};
+use sixfold_results::{Control, ResultRow, Samples};
+use sixfold_results::{Run, RunSettings};
 
 /// Maximum share of disturbed samples on a quiet machine.
 const FEW_DISTURBED: f64 = 0.1;
@@ -234,8 +233,7 @@ mod tests {
     use sixfold_workload::Operation;
 
     use super::*;
-    use crate::labs::study::sentences::row;
-    use crate::results::rows::{ControlRow, Standing};
+    use sixfold_results::{ControlRow, Standing};
 
     fn quiet() -> Run {
         let mut run = Run::default();
@@ -293,7 +291,7 @@ mod tests {
             ci_low_ns: Some(99.0),
             ci_high_ns: Some(101.0),
             samples: 20,
-            ..row("half-edge", Operation::Build, 1.0, Standing::Best)
+            ..crate::labs::study::sentences::row("half-edge", Operation::Build, 1.0, Standing::Best)
         }
     }
 
@@ -317,7 +315,7 @@ mod tests {
         let control = Control {
             backend: "half-edge".into(),
             operations: vec![ControlRow {
-                operation: Operation::Build,
+                operation: Operation::Build.name().into(),
                 ratio: 1.2,
                 ci_low: None,
                 ci_high: None,

@@ -13,17 +13,19 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sixfold::{Facts, PolygonMesh, QueryCost};
-use sixfold_workload::pages::{HeapGuard, Policy};
+use sixfold_results::Time;
+use sixfold_results::{AskedCount, Policy};
+use sixfold_workload::pages::HeapGuard;
 use sixfold_workload::{
-    Contestant, Job, MachineClock, Operation, Outcome, Run, Series, Suite, Task, Time, TimedBackend,
+    Contestant, Job, MachineClock, Operation, Outcome, Run, Series, Suite, Task, TimedBackend,
 };
 
 use super::MeshFile;
 use super::program::{PROTOCOL, Program};
 use super::subject::ExternalSubject;
-use crate::labs::pick::{AskedCount, Qualification};
+use crate::labs::pick::Qualification;
 use crate::refusal;
-use crate::sanitize::sanitize;
+use sixfold_results::sanitize;
 
 /// How programs run in child processes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -191,7 +193,7 @@ pub fn serve_program(
             }
             "asked" => {
                 let asked = contestant.record(polygons).and_then(Result::ok);
-                answer(json!({"asked": asked.map(|asked| AskedCount::list(&asked))}))?;
+                answer(json!({"asked": asked.map(|asked| asked.counts())}))?;
                 continue;
             }
             other => {

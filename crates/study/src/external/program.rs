@@ -11,10 +11,9 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use sixfold_workload::pages::Policy;
+use sixfold_results::{AskedCount, Policy};
 
-use crate::labs::pick::AskedCount;
-use crate::sanitize::sanitize;
+use sixfold_results::sanitize;
 
 /// Version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;

@@ -1,10 +1,11 @@
 //! An external program as a backend of the measurement.
 
 use sixfold::QueryCost;
-use sixfold_workload::{Clock, Job, Outcome, Run, Series, Time, TimedBackend};
+use sixfold_results::Time;
+use sixfold_workload::{Clock, Job, Outcome, Run, Series, TimedBackend};
 
 use super::program::{Program, Request, Response};
-use crate::sanitize::sanitize;
+use sixfold_results::sanitize;
 
 /// Maximum ratio of the time that a program reports to the time that Sixfold waited.
 const CLOCK_TOLERANCE: f64 = 1.01;

@@ -19,154 +19,34 @@ mod shapes;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::{Deserialize, Serialize};
-use sixfold::shapes::Order;
 use sixfold_core::Counts;
 
-pub use fits::{CacheLimit, Fit};
 pub use settings::{GrowthError, GrowthSettings, growth_bytes, growth_plan};
 pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::control::noise;
-use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
+use crate::engine::measure::corrected_entries;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::timer::Timer;
+use crate::engine::run::{start_run, with_memory};
+use crate::engine::timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, Rows};
-use crate::results::finding::LabFinding;
-use crate::results::read::ReadError;
-use crate::results::rows::{BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples};
-use crate::results::run::{Run, RunSettings};
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
 use settings::Plan;
+use sixfold_results::{
+    BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthReport, MeshReport, ResultRow, Samples,
+    SizeReport,
+};
+use sixfold_results::{Cache, last_level_bytes};
+use sixfold_workload::caches;
 use sixfold_workload::{Backend, Draw, MachineClock, TimedBackend};
-use sixfold_workload::{Cache, caches, last_level_bytes};
-
-/// The results for one shape in several sizes.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct GrowthReport {
-    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
-    #[serde(skip)]
-    pub run: Run,
-    /// The name, facts and hash of the mesh of each size, in the order of `sizes`. Empty if an older
-    /// version of Sixfold wrote the document. In JSON, the finding has the places of the meshes in
-    /// `meshes`.
-    #[serde(skip)]
-    pub meshes: Vec<MeshReport>,
-    /// Name of the shape.
-    pub shape: String,
-    /// Order of the elements in memory.
-    pub order: Order,
-    /// The names of the measured backends.
-    pub backends: Vec<String>,
-    /// The backends that cannot hold the shape.
-    pub refused_by: Vec<BackendRefusal>,
-    /// The results at each measured size, beginning with the smallest size.
-    pub sizes: Vec<SizeReport>,
-    /// Approximate numbers of faces of the sizes that were left out because there was too little
-    /// time.
-    pub left_out: Vec<usize>,
-    /// The fitted lines, sorted by operation, then by backend.
-    pub fits: Vec<Fit>,
-    /// The processor caches of this machine; empty if unknown.
-    pub caches: Vec<Cache>,
-    /// The number of faces at which each structure becomes larger than each cache. The list is
-    /// sorted by cache, then by backend.
-    pub cache_limits: Vec<CacheLimit>,
-    /// Sentences that describe the results.
-    pub sentences: Vec<String>,
-    /// Sentences about possible faults of the measurement and their remedies.
-    pub warnings: Vec<String>,
-    /// True if the measurement was stopped early. Some sizes may then be missing.
-    pub interrupted: bool,
-    /// The resolution and the cost of reading the clock.
-    pub timer: Timer,
-}
-
-/// The results at one size of the shape.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct SizeReport {
-    /// Number of vertices.
-    pub vertices: usize,
-    /// Number of edges.
-    pub edges: usize,
-    /// Number of faces.
-    pub faces: usize,
-    /// Size of each backend in bytes.
-    pub backend_bytes: Vec<BackendBytes>,
-    /// The times of each operation on each backend.
-    pub results: Vec<ResultRow>,
-    /// The times of all samples.
-    pub samples: Vec<Samples>,
-    /// Operations that a backend cannot do.
-    pub refusals: Vec<Refusal>,
-    /// The comparison of two measurements of one backend, which shows the noise. `None` if no
-    /// backend was measured twice.
-    pub control: Option<Control>,
-}
-
-/// The size of a backend in bytes.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct BackendBytes {
-    /// The name of the backend, such as `half-edge`.
-    pub backend: String,
-    /// Allocated bytes, including spare capacity.
-    pub bytes: usize,
-    /// Smallest level of a cache that can hold these bytes; `None` if no known cache is large
-    /// enough.
-    pub fits_in: Option<u8>,
-}
-
-impl SizeReport {
-    fn all_rows(&self) -> Rows<'_> {
-        Rows {
-            results: &self.results,
-            refusals: &self.refusals,
-            samples: &self.samples,
-            control: self.control.as_ref(),
-        }
-    }
-}
-
-impl LabFinding for GrowthReport {
-    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let of_size = |(i, size): (usize, &'s SizeReport)| {
-            let bytes = |name: &str| {
-                let mut bytes = size.backend_bytes.iter();
-                bytes.find(|bytes| bytes.backend == name).map(|b| b.bytes)
-            };
-            let noise = |operation| noise(size.control.as_ref(), operation);
-            let mut figures = size.all_rows().figures(self.meshes.get(i), bytes, noise);
-            for figure in &mut figures {
-                figure.elements_of_mesh = [size.vertices, size.edges, size.faces];
-                let faces = size.faces;
-                figure.row.case = format!("{}, {}, {faces} faces", self.shape, self.order);
-            }
-            figures
-        };
-        self.sizes.iter().enumerate().flat_map(of_size).collect()
-    }
-
-    fn check(&self) -> Result<(), ReadError> {
-        let [count, sizes] = [self.meshes.len(), self.sizes.len()];
-        if count != 0 && count != sizes {
-            return Err(ReadError::Malformed {
-                cause: format!("a finding of the kind `growth` has {count} meshes, not {sizes}"),
-            });
-        }
-        let mut sizes = self.sizes.iter();
-        sizes.try_for_each(|size| size.all_rows().check())
-    }
-}
 
 /// Measures a shape in several sizes, within the time budget of `settings`. A size is left out if
 /// the structures of this size cannot be built in the remaining time.
@@ -198,8 +78,8 @@ pub(crate) fn growth_on(
     let plan = settings.plan()?;
     let caches = caches();
     let clock = machine.clock();
-    let run = Run::start(RunSettings::of_study(&settings.study));
-    let mut timer = Timer::measure(clock);
+    let run = start_run(settings.study.run_settings());
+    let mut timer = timer::measure(clock);
     let mut sweep = Sweep {
         settings,
         plan: &plan,
@@ -275,7 +155,7 @@ pub(crate) fn growth_on(
         .map_or_else(Vec::new, |counts| cache_limits(&backends, &counts, &caches));
     let mut sentences = sentences::sentences(&sizes, &fits, &caches, &cache_limits);
     sentences.extend(sentences::left_out(&left_out));
-    let run = run.with_memory(&memory);
+    let run = with_memory(run, &memory);
     timer = timer.with_shortest(sweep.shortest_ns);
     let rows: Vec<&ResultRow> = sizes.iter().flat_map(|size| &size.results).collect();
     let noisiest = sizes.iter().filter_map(|size| size.control.as_ref());
@@ -286,7 +166,7 @@ pub(crate) fn growth_on(
         run,
         meshes,
         shape: settings.shape.clone(),
-        order: settings.order,
+        order: settings.order.to_string(),
         backends: backends.iter().map(|b| b.name().to_owned()).collect(),
         refused_by: sweep.refused_by,
         sizes,

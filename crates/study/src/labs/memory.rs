@@ -7,99 +7,24 @@
 
 mod sentences;
 
-use serde::{Deserialize, Serialize};
 use sixfold::{BuildError, PolygonMesh};
 use sixfold_core::Counts;
 use sixfold_workload::{
     AllocationCounter, Backend, Heap, MAX_SCANNED_FACES, MeasuredMemory, NotCounted, Operation,
 };
 
+use crate::engine::run::start_run;
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::Candidate;
-use crate::results::figure::{Counted, Figure, Status};
-use crate::results::finding::LabFinding;
-use crate::results::read::ReadError;
-use crate::results::rows::{BackendReport, MeshReport, ResultRow};
-use crate::results::run::{Run, RunSettings};
+use sixfold_results::RunSettings;
+use sixfold_results::{Audit, BackendAudit, BackendReport, OperationBytes};
 
 /// Bytes of a word: an index or a coordinate.
 const WORD: f64 = 4.0;
 
-/// The name of the structure itself among the operations of the figures.
-const STRUCTURE: &str = "structure";
-
 /// Maximum number of counts per backend. Counting ends earlier if two counts in a row are equal.
 const MAX_COUNTS: usize = 8;
-
-/// The memory of each backend, counted by a formula, by the tables and by the allocator.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Audit {
-    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
-    #[serde(skip)]
-    pub run: Run,
-    /// The name, facts and hashes of the mesh. In JSON, the finding has the place of the mesh in
-    /// `meshes`.
-    #[serde(skip)]
-    pub mesh: MeshReport,
-    /// The backends, in the requested order.
-    pub backends: Vec<BackendAudit>,
-    /// Sentences about the results; empty in older documents.
-    #[serde(default)]
-    pub sentences: Vec<String>,
-    /// Sentences about possible faults of the counting and their remedies. A count has none so far.
-    #[serde(default)]
-    pub warnings: Vec<String>,
-    /// True if the counting was stopped early. A count that is stopped has no finding so far.
-    #[serde(default)]
-    pub interrupted: bool,
-}
-
-/// The memory of one backend, counted by a formula, by the tables and by the allocator.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct BackendAudit {
-    /// The bytes by the layout formula, the bytes of the tables, and whether the backend can hold
-    /// the mesh.
-    #[serde(flatten)]
-    pub backend: BackendReport,
-    /// Size by the layout formula, in words of 4 bytes per vertex of this mesh. `None` if the
-    /// backend cannot hold the mesh.
-    pub layout_words_per_vertex: Option<f64>,
-    /// Size by the layout formula for a very large closed triangle mesh, in words of 4 bytes per
-    /// vertex. A very large closed triangle mesh has about 2 faces and 3 edges per vertex.
-    pub closed_triangles_words_per_vertex: f64,
-    /// Bytes that the allocator counted; `None` if the backend cannot hold the mesh.
-    pub counted_bytes: Option<usize>,
-    /// Bytes that the allocator counted, per vertex of the mesh.
-    pub counted_bytes_per_vertex: Option<f64>,
-    /// Peak memory while the backend is built, in bytes. The input polygons are not included.
-    pub peak_bytes: Option<usize>,
-    /// `peak_bytes` divided by `counted_bytes`.
-    pub peak_to_counted: Option<f64>,
-    /// True if the layout formula, the tables and the allocator give the same number of bytes.
-    /// `None` if the backend cannot hold the mesh.
-    pub agrees: Option<bool>,
-    /// The bytes that operations allocate; empty if these bytes were not counted.
-    pub operations: Vec<OperationBytes>,
-}
-
-/// The bytes that one run of an operation allocates on one backend.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct OperationBytes {
-    /// The operation that allocates, such as `build`.
-    pub operation: Operation,
-    /// Bytes that the timed part of the operation requests from the allocator. `None` if the
-    /// operation was not run.
-    pub allocated_bytes: Option<usize>,
-    /// Bytes of the result of the operation; `None` if the operation was not run.
-    pub result_bytes: Option<usize>,
-    /// Allocated bytes divided by the bytes of the result.
-    pub allocated_to_result: Option<f64>,
-    /// Why the operation was not run; `None` if the operation was run.
-    pub reason: Option<String>,
-    /// True if the operation was not run because it scans all faces for each element.
-    pub scans: bool,
-}
 
 /// Builds each of `backends` from the mesh, one backend at a time, and counts the bytes with
 /// `heap`.
@@ -118,10 +43,10 @@ pub fn audit(
     let backends = backends.iter().map(|backend| {
         counting(backend);
         let measured = count_bytes(backend, candidate.polygons, heap);
-        BackendAudit::new(backend, &candidate, measured)
+        backend_audit(backend, &candidate, measured)
     });
     let mut audit = Audit {
-        run: Run::start(RunSettings {
+        run: start_run(RunSettings {
             backends: names,
             ..RunSettings::default()
         }),
@@ -170,33 +95,34 @@ pub fn count_allocations(
                     _ => break,
                 }
             }
-            OperationBytes::new(operation, least)
+            operation_bytes(operation, least)
         });
         audited.operations = operations.collect();
     }
 }
 
-impl OperationBytes {
-    fn new(operation: Operation, counted: Result<sixfold_workload::Allocated, NotCounted>) -> Self {
-        let scans = counted == Err(NotCounted::Scans);
-        let counted = counted.map_err(|not_counted| match not_counted {
-            NotCounted::Refused(reason) => reason,
-            NotCounted::Scans => format!(
-                "it scans all faces for each element, and the mesh has more than \
-                 {MAX_SCANNED_FACES} faces"
-            ),
-        });
-        let figures = counted.as_ref().ok();
-        Self {
-            operation,
-            allocated_bytes: figures.map(|figures| figures.bytes),
-            result_bytes: figures.map(|figures| figures.result_bytes),
-            allocated_to_result: figures
-                .filter(|figures| figures.result_bytes > 0)
-                .map(|figures| figures.bytes as f64 / figures.result_bytes as f64),
-            reason: counted.err(),
-            scans,
-        }
+fn operation_bytes(
+    operation: Operation,
+    counted: Result<sixfold_workload::Allocated, NotCounted>,
+) -> OperationBytes {
+    let scans = counted == Err(NotCounted::Scans);
+    let counted = counted.map_err(|not_counted| match not_counted {
+        NotCounted::Refused(reason) => reason,
+        NotCounted::Scans => format!(
+            "it scans all faces for each element, and the mesh has more than \
+             {MAX_SCANNED_FACES} faces"
+        ),
+    });
+    let figures = counted.as_ref().ok();
+    OperationBytes {
+        operation: operation.name().into(),
+        allocated_bytes: figures.map(|figures| figures.bytes),
+        result_bytes: figures.map(|figures| figures.result_bytes),
+        allocated_to_result: figures
+            .filter(|figures| figures.result_bytes > 0)
+            .map(|figures| figures.bytes as f64 / figures.result_bytes as f64),
+        reason: counted.err(),
+        scans,
     }
 }
 
@@ -216,140 +142,48 @@ fn count_bytes(
     Ok(last)
 }
 
-impl Audit {
-    /// Describes each difference between the bytes of the layout formula, of the tables and of the
-    /// allocator.
-    pub fn faults(&self) -> Vec<String> {
-        self.backends
-            .iter()
-            .flat_map(BackendAudit::faults)
-            .collect()
-    }
-
-    /// Returns the error for a mesh that no backend can hold; `None` if some backend can hold the
-    /// mesh.
-    pub fn refusal_error(&self) -> Option<StudyError> {
-        let refusal = |BackendAudit { backend, .. }: &BackendAudit| backend.refusal();
-        let refusals: Option<Vec<_>> = self.backends.iter().map(refusal).collect();
-        refusals.map(StudyError::none_holds)
-    }
+/// Returns the error for a mesh that no backend can hold; `None` if some backend can hold the mesh.
+pub fn none_holds(audit: &Audit) -> Option<StudyError> {
+    let refusal = |BackendAudit { backend, .. }: &BackendAudit| backend.refusal();
+    let refusals: Option<Vec<_>> = audit.backends.iter().map(refusal).collect();
+    refusals.map(StudyError::none_holds)
 }
 
-impl LabFinding for Audit {
-    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let of_backend = |audited: &'s BackendAudit| {
-            let backend = &audited.backend;
-            let figure = |operation: &str, status, counted| {
-                let row = ResultRow {
-                    backend: backend.name.clone(),
-                    operation: operation.to_owned(),
-                    ..ResultRow::default()
-                };
-                Figure {
-                    counted,
-                    ..Figure::new(Some(&self.mesh), audited.counted_bytes, status, row)
-                }
+fn backend_audit(
+    backend: &Backend,
+    candidate: &Candidate<'_>,
+    measured: Result<MeasuredMemory, BuildError>,
+) -> BackendAudit {
+    let counts = &candidate.counts;
+    let closed_triangles = closed_triangles_words(backend);
+    let (report, measured) = match measured {
+        Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
+        Ok(measured) => {
+            let bytes = measured.memory.total();
+            let report = BackendReport {
+                bytes: Some(bytes),
+                bytes_per_vertex: per_vertex(bytes, counts),
+                tables: measured.memory.tables,
+                merged_vertices: Some(measured.merged_vertices),
+                ..unbuilt(backend, candidate, Ok(()))
             };
-            let operation = |counted: &OperationBytes| {
-                let status = match (counted.allocated_bytes, counted.scans) {
-                    (Some(_), _) => Status::Counted,
-                    (None, true) => Status::NotRun,
-                    (None, false) => Status::Refused,
-                };
-                let bytes = Counted {
-                    allocated_bytes: counted.allocated_bytes,
-                    ..Counted::default()
-                };
-                figure(counted.operation.name(), status, bytes)
-            };
-            let status = match backend.holds {
-                true => Status::Counted,
-                false => Status::Refused,
-            };
-            let bytes = Counted {
-                layout_bytes: backend.layout_bytes.filter(|_| backend.holds),
-                counted_bytes: audited.counted_bytes,
-                peak_bytes: audited.peak_bytes,
-                ..Counted::default()
-            };
-            let structure = figure(STRUCTURE, status, bytes);
-            let operations = audited.operations.iter().map(operation);
-            std::iter::once(structure)
-                .chain(operations)
-                .collect::<Vec<_>>()
-        };
-        self.backends.iter().flat_map(of_backend).collect()
-    }
-
-    fn check(&self) -> Result<(), ReadError> {
-        Ok(())
-    }
-}
-
-impl BackendAudit {
-    fn new(
-        backend: &Backend,
-        candidate: &Candidate<'_>,
-        measured: Result<MeasuredMemory, BuildError>,
-    ) -> Self {
-        let counts = &candidate.counts;
-        let closed_triangles = closed_triangles_words(backend);
-        let (report, measured) = match measured {
-            Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
-            Ok(measured) => {
-                let bytes = measured.memory.total();
-                let report = BackendReport {
-                    bytes: Some(bytes),
-                    bytes_per_vertex: per_vertex(bytes, counts),
-                    tables: measured.memory.tables,
-                    merged_vertices: Some(measured.merged_vertices),
-                    ..unbuilt(backend, candidate, Ok(()))
-                };
-                (report, Some((measured.counted, measured.peak)))
-            }
-        };
-        let [layout, tables] = [report.layout_bytes, report.bytes];
-        let (counted, peak) = measured.unzip();
-        Self {
-            layout_words_per_vertex: report.layout_bytes_per_vertex.map(|bytes| bytes / WORD),
-            closed_triangles_words_per_vertex: closed_triangles,
-            counted_bytes: counted,
-            counted_bytes_per_vertex: counted.and_then(|bytes| per_vertex(bytes, counts)),
-            peak_bytes: peak,
-            peak_to_counted: peak
-                .zip(counted.filter(|&bytes| bytes > 0))
-                .map(|(peak, counted)| peak as f64 / counted as f64),
-            agrees: counted.map(|_| layout == tables && tables == counted),
-            operations: Vec::new(),
-            backend: report,
+            (report, Some((measured.counted, measured.peak)))
         }
-    }
-
-    fn faults(&self) -> Vec<String> {
-        let BackendReport {
-            name,
-            layout_bytes,
-            bytes,
-            ..
-        } = &self.backend;
-        let (Some(layout), Some(tables), Some(counted)) =
-            (*layout_bytes, *bytes, self.counted_bytes)
-        else {
-            return Vec::new();
-        };
-        let difference = |what: &str, is: usize, other: &str, than: usize| {
-            let more = if is > than { "more" } else { "fewer" };
-            let by = is.abs_diff(than);
-            (by > 0)
-                .then(|| format!("{name}: {what}, {by} bytes {more} than {other} ({than} bytes)"))
-        };
-        let tables_text = format!("its tables hold {tables} bytes");
-        let heap_text = format!("the allocator counted {counted} bytes");
-        let faults = [
-            difference(&tables_text, tables, "its layout formula gives", layout),
-            difference(&heap_text, counted, "its tables hold", tables),
-        ];
-        faults.into_iter().flatten().collect()
+    };
+    let [layout, tables] = [report.layout_bytes, report.bytes];
+    let (counted, peak) = measured.unzip();
+    BackendAudit {
+        layout_words_per_vertex: report.layout_bytes_per_vertex.map(|bytes| bytes / WORD),
+        closed_triangles_words_per_vertex: closed_triangles,
+        counted_bytes: counted,
+        counted_bytes_per_vertex: counted.and_then(|bytes| per_vertex(bytes, counts)),
+        peak_bytes: peak,
+        peak_to_counted: peak
+            .zip(counted.filter(|&bytes| bytes > 0))
+            .map(|(peak, counted)| peak as f64 / counted as f64),
+        agrees: counted.map(|_| layout == tables && tables == counted),
+        operations: Vec::new(),
+        backend: report,
     }
 }
 
@@ -372,6 +206,8 @@ mod tests {
 
     use sixfold::{HalfEdgeMesh, IndexedFaceSet, shapes};
     use sixfold_core::Measured;
+
+    use sixfold_results::Counted;
 
     use super::*;
 
@@ -430,7 +266,7 @@ mod tests {
         );
         let mut with_operation = audit.clone();
         with_operation.backends[0].operations = vec![OperationBytes {
-            operation: Operation::Build,
+            operation: Operation::Build.name().into(),
             allocated_bytes: Some(3 * BYTES),
             result_bytes: Some(BYTES),
             allocated_to_result: Some(3.0),
@@ -459,7 +295,7 @@ mod tests {
         assert_eq!(one.peak_to_counted, Some(2.0));
         assert_eq!(one.layout_words_per_vertex, Some(24.0));
         assert_eq!(one.counted_bytes_per_vertex, Some(96.0));
-        assert_eq!(audit.refusal_error(), None);
+        assert_eq!(none_holds(&audit), None);
     }
 
     #[test]
@@ -536,7 +372,7 @@ mod tests {
             counted.push(backend.name());
         });
         assert_eq!(counted, ["indexed-face-set", "corner-table"]);
-        assert_eq!((audit.refusal_error(), audit.faults().len()), (None, 0));
+        assert_eq!((none_holds(&audit), audit.faults().len()), (None, 0));
         let least = "indexed-face-set needs 192 bytes, 24.0 per vertex.";
         assert_eq!(audit.sentences[0], least);
         let refused = &audit.backends[1];
@@ -544,7 +380,7 @@ mod tests {
         assert_eq!((refused.agrees, refused.counted_bytes), (None, None));
         assert_eq!(refused.closed_triangles_words_per_vertex, 16.0);
 
-        let none = self::audit(&quads, &[table], &heap, &mut |_| ()).refusal_error();
+        let none = none_holds(&self::audit(&quads, &[table], &heap, &mut |_| ()));
         let none = none.expect("the only one refuses").to_string();
         assert!(none.contains("corner-table: "), "{none}");
     }

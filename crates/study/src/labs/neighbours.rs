@@ -10,35 +10,31 @@ mod sentences;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
-use sixfold_workload::pages::Policy;
+use sixfold_results::{CheapestIndices, IndexReport, NeighboursReport, Policy};
 use sixfold_workload::spatial::{IndexKind, Input, KINDS, LIST};
 use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
 
-pub use cheapest::Cheapest;
-pub use sixfold_workload::spatial::{QueryPoints, SpatialTask};
+use sixfold_results::{QueryPoints, SpatialTask};
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
+use crate::engine::measure::corrected_entries;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::ranking::{NO_DIFFERENCE, ratio};
-use crate::engine::timer::Timer;
+use crate::engine::run::{start_run, with_memory};
+use crate::engine::timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::machine_warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::rows::Group;
 use crate::labs::study::StudyError;
-use crate::results::figure::{Figure, Rows};
-use crate::results::finding::LabFinding;
-use crate::results::read::ReadError;
-use crate::results::rows::{Agreement, MeasuredTask, MeshReport, ResultRow, Samples};
-use crate::results::run::{Run, RunSettings};
 use cheapest::{Cost, cheapest};
+use sixfold_results::CacheState;
+use sixfold_results::RunSettings;
+use sixfold_results::ranking::{NO_DIFFERENCE, ratio};
+use sixfold_results::{Agreement, ResultRow};
 
 /// Maximum number of elements that the list visits in one run.
 const LIST_VISITS: usize = 4_000_000;
@@ -80,107 +76,6 @@ pub enum NeighboursError {
     /// A position of the mesh is not finite.
     #[error(transparent)]
     Spatial(#[from] SpatialError),
-}
-
-/// The times of spatial indices on one mesh.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct NeighboursReport {
-    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
-    #[serde(skip)]
-    pub run: Run,
-    /// The name, facts and hashes of the mesh. In JSON, the finding has the place of the mesh in
-    /// `meshes`.
-    #[serde(skip)]
-    pub mesh: MeshReport,
-    /// Where the query points are.
-    pub points: QueryPoints,
-    /// The number of query points.
-    pub queries: usize,
-    /// The radius of `vertices_within`, in units of the coordinates.
-    pub radius: f64,
-    /// The indices and their sizes.
-    pub backends: Vec<IndexReport>,
-    /// The measured times, sorted by task, then by index.
-    pub results: Vec<ResultRow<SpatialTask>>,
-    /// For each kind of query, which index takes the least time in total.
-    pub cheapest: Vec<CheapestIndices>,
-    /// The largest difference of two measurements of the same index, as a ratio of times. `None` if
-    /// no index was measured twice.
-    pub noise: Option<f64>,
-    /// Sentences that describe the results.
-    pub sentences: Vec<String>,
-    /// Sentences about possible faults of the measurement and their remedies.
-    pub warnings: Vec<String>,
-    /// The times of all samples, including the second measurement of the control.
-    pub samples: Vec<Samples>,
-    /// True if the measurement was stopped early.
-    pub interrupted: bool,
-    /// The resolution and the cost of reading the clock.
-    pub timer: Timer,
-}
-
-/// The size of an index.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct IndexReport {
-    /// The name of the index, such as `bvh`.
-    pub name: String,
-    /// The bytes of the index of the vertices and the index of the triangles, together.
-    pub bytes: usize,
-}
-
-/// The indices that take the least time for one kind of query, building included.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct CheapestIndices {
-    /// The kind of query.
-    pub operation: SpatialTask,
-    /// Ranges of the number of queries, in ascending order.
-    pub ranges: Vec<Cheapest>,
-}
-
-impl NeighboursReport {
-    /// Iterates over the results of `task`.
-    pub fn rows(&self, task: SpatialTask) -> impl Iterator<Item = &ResultRow<SpatialTask>> {
-        self.results.iter().filter(move |row| row.operation == task)
-    }
-
-    fn all_rows(&self) -> Rows<'_, SpatialTask> {
-        Rows {
-            results: &self.results,
-            refusals: &[],
-            samples: &self.samples,
-            control: None,
-        }
-    }
-}
-
-impl LabFinding for NeighboursReport {
-    fn figures(&self) -> Vec<Figure<'_>> {
-        let bytes = |name: &str| {
-            let mut backends = self.backends.iter();
-            backends.find(|index| index.name == name).map(|i| i.bytes)
-        };
-        let noise = self.noise.unwrap_or(1.0);
-        let mesh = Some(&self.mesh);
-        let mut figures = self.all_rows().figures(mesh, bytes, |_| noise);
-        for figure in &mut figures {
-            figure.row.case = self.points.name().into();
-        }
-        figures
-    }
-
-    fn check(&self) -> Result<(), ReadError> {
-        self.all_rows().check()
-    }
-}
-
-impl MeasuredTask for SpatialTask {
-    fn name(self) -> &'static str {
-        self.name()
-    }
-
-    fn unit(self) -> &'static str {
-        self.unit()
-    }
 }
 
 impl NeighboursSettings {
@@ -238,11 +133,11 @@ pub(crate) fn neighbours_on(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let run = Run::start(RunSettings {
+    let run = start_run(RunSettings {
         backends: settings.indices.clone(),
         seed: settings.seed,
         heap: settings.heap,
-        ..RunSettings::of_effort(settings.effort)
+        ..settings.effort.run_settings()
     });
     let input = Input::new(polygons, settings.points, settings.seed)?;
     let counts = polygons.counts(study_mesh.facts.edges);
@@ -266,7 +161,7 @@ pub(crate) fn neighbours_on(
             .filter(|_| chosen[first].name != LIST)
     };
     let mut columns = Columns::new(subjects, Vec::new(), again);
-    let timer = Timer::measure(clock);
+    let timer = timer::measure(clock);
     let entries = entries(&columns, &input);
     let mut trial = Trial {
         counts,
@@ -293,7 +188,7 @@ pub(crate) fn neighbours_on(
     let measured_noise = |task| difference(control?[0], &entries, &second, task);
     let noise = |task| measured_noise(task).unwrap_or(1.0).max(NO_DIFFERENCE);
     let results = results(&entries, &agreements, subjects, &noise);
-    let run = run.with_memory(&memory);
+    let run = with_memory(run, &memory);
     let mut report = NeighboursReport {
         warnings: machine_warnings(&run, &samples.iter().collect::<Vec<_>>()),
         run,
@@ -311,7 +206,7 @@ pub(crate) fn neighbours_on(
         sentences: Vec::new(),
         samples,
         interrupted,
-        timer: timer.with_entries(&entries),
+        timer: timer::with_entries(timer, &entries),
     };
     report.sentences = sentences::sentences(&report);
     Ok(report)
@@ -363,7 +258,7 @@ fn results(
     agreements: &[Agreement],
     subjects: &[Box<dyn TimedBackend + '_>],
     noise: &impl Fn(SpatialTask) -> f64,
-) -> Vec<ResultRow<SpatialTask>> {
+) -> Vec<ResultRow> {
     let times = corrected_entries(entries);
     let mut rows = Vec::new();
     let mut from = 0;
@@ -372,7 +267,8 @@ fn results(
         let range = from..from + entries.len();
         from = range.end;
         let group = Group {
-            task,
+            operation: task.name(),
+            unit: task.unit(),
             entries,
             times: &times[range.clone()],
             agreements: &agreements[range],
@@ -386,15 +282,17 @@ fn results(
 
 /// Returns for each kind of query which index takes the least time, building included.
 fn cheapest_indices(
-    results: &[ResultRow<SpatialTask>],
+    results: &[ResultRow],
     noise: &impl Fn(SpatialTask) -> f64,
 ) -> Vec<CheapestIndices> {
     let queries = SpatialTask::ALL.into_iter();
     let queries = queries.filter_map(|query| Some((query, query.build()?)));
     let ranges = queries.map(|(query, build)| {
-        let costs = results.iter().filter(|row| row.operation == query);
+        let costs = results.iter().filter(|row| row.operation == query.name());
         let costs = costs.filter_map(|row| {
-            let mut builds = results.iter().filter(|other| other.operation == build);
+            let mut builds = results
+                .iter()
+                .filter(|other| other.operation == build.name());
             let build = builds.find(|other| other.backend == row.backend)?;
             Some(Cost {
                 index: &row.backend,
@@ -404,7 +302,7 @@ fn cheapest_indices(
             })
         });
         CheapestIndices {
-            operation: query,
+            operation: query.to_string(),
             ranges: cheapest(&costs.collect::<Vec<_>>(), noise(query)),
         }
     });

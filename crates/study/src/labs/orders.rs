@@ -13,35 +13,28 @@ mod sentences;
 
 use std::sync::atomic::AtomicBool;
 
-use serde::{Deserialize, Serialize};
 use sixfold::PolygonMesh;
 use sixfold::shapes::Order;
 use sixfold_core::Counts;
 
-pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
-
 use crate::engine::agreement::compare_checksums;
-use crate::engine::control::noise;
-use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::Budget;
 use crate::engine::machine::Machine;
+use crate::engine::measure::corrected_entries;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::timer::Timer;
+use crate::engine::run::{start_run, with_memory};
+use crate::engine::timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
-use crate::labs::study::report::bytes_of;
+
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, Rows};
-use crate::results::finding::LabFinding;
-use crate::results::read::ReadError;
-use crate::results::rows::{
-    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples,
-};
-use crate::results::run::{Run, RunSettings};
-use effects::OrderSamples;
+use effects::{OrderSamples, comparison};
 use meshes::OrderedMeshes;
+use sixfold_results::{
+    Agreement, Comparison, Control, OrdersReport, Refusal, ResultRow, Samples, noise,
+};
 use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
 
 /// Names of the operations that [`orders`] measures if the settings name no operations.
@@ -53,71 +46,6 @@ pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "vertex_normal",
     "ff_bfs",
 ];
-
-/// The results of one mesh with its elements in several orders.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct OrdersReport {
-    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
-    #[serde(skip)]
-    pub run: Run,
-    /// The name, facts and hashes of the mesh in its original order. In JSON, the finding has the
-    /// place of the mesh in `meshes`.
-    #[serde(skip)]
-    pub mesh: MeshReport,
-    /// The measured orders.
-    pub orders: Vec<Order>,
-    /// The requested backends with their memory, built from the mesh in its original order.
-    pub backends: Vec<BackendReport>,
-    /// The measured times, sorted by operation, then by structure, then by order. The order is the
-    /// `case`. `standing` and `ratio_to_best` compare it with the other orders on the structure.
-    pub results: Vec<ResultRow>,
-    /// Requested operations that a backend cannot do.
-    pub refusals: Vec<Refusal>,
-    /// The effects of the order and of the structure, for each operation.
-    pub comparisons: Vec<Comparison>,
-    /// The comparison of two measurements of one structure in the original order, which shows the
-    /// noise. `None` if no structure was measured twice.
-    pub control: Option<Control>,
-    /// Sentences that describe the results.
-    pub sentences: Vec<String>,
-    /// Sentences about possible faults of the measurement and their remedies.
-    pub warnings: Vec<String>,
-    /// The times of all samples, without the second measurement of the control.
-    pub samples: Vec<Samples>,
-    /// True if the measurement was stopped early.
-    pub interrupted: bool,
-    /// The resolution and the cost of reading the clock.
-    pub timer: Timer,
-}
-
-impl OrdersReport {
-    /// Iterates over the results of `operation`.
-    pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &ResultRow> {
-        let of_it = move |row: &&ResultRow| row.operation == operation;
-        self.results.iter().filter(of_it)
-    }
-
-    fn all_rows(&self) -> Rows<'_> {
-        Rows {
-            results: &self.results,
-            refusals: &self.refusals,
-            samples: &self.samples,
-            control: self.control.as_ref(),
-        }
-    }
-}
-
-impl LabFinding for OrdersReport {
-    fn figures(&self) -> Vec<Figure<'_>> {
-        let bytes = |backend: &str| bytes_of(&self.backends, backend);
-        let noise = |operation| noise(self.control.as_ref(), operation);
-        self.all_rows().figures(Some(&self.mesh), bytes, noise)
-    }
-
-    fn check(&self) -> Result<(), ReadError> {
-        self.all_rows().check()
-    }
-}
 
 /// Returns the requested operations. If none is requested, returns [`DEFAULT_OPERATIONS`].
 pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
@@ -167,7 +95,7 @@ pub(crate) fn orders_on(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces);
     }
-    let run = Run::start(RunSettings::of_study(settings));
+    let run = start_run(settings.run_settings());
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = orders_bytes(study_mesh, settings)?;
     let mut memory = machine.start_memory(settings.heap, settings.caches, needed)?;
@@ -205,7 +133,7 @@ pub(crate) fn orders_on(
         let (subject, _) = columns[first].backend.prepare(mesh, draw).ok()?;
         Some(machine.host(subject, &counts))
     });
-    let timer = Timer::measure(clock);
+    let timer = timer::measure(clock);
     let mut trial = Trial {
         counts,
         skewed,
@@ -252,18 +180,18 @@ pub(crate) fn orders_on(
             ns,
         });
         let timed: Vec<OrderSamples> = timed.collect();
-        Comparison::new(operation, &timed, noise(control.as_ref(), operation))
+        comparison(operation, &timed, noise(control.as_ref(), operation.name()))
     };
     let comparisons: Vec<Comparison> = operations.into_iter().map(timed).collect();
     let sentences = sentences::sentences(&rows, &comparisons, control.as_ref());
-    let run = run.with_memory(&memory);
-    let timer = timer.with_entries(&entries);
+    let run = with_memory(run, &memory);
+    let timer = timer::with_entries(timer, &entries);
     let timed: Vec<&ResultRow> = rows.iter().collect();
     let samples = entries.iter().filter_map(|entry| {
         let Column { backend, order } = columns[entry.subject];
         Some(Samples {
             case: order.name().into(),
-            ..Samples::of_entry(entry, backend.name(), false)?
+            ..entry.to_samples(backend.name(), false)?
         })
     });
     let samples: Vec<Samples> = samples.collect();
@@ -273,7 +201,7 @@ pub(crate) fn orders_on(
     Ok(OrdersReport {
         run,
         mesh: study_mesh.report(),
-        orders: Order::ALL.into(),
+        orders: Order::ALL.map(|order| order.to_string()).into(),
         backends,
         samples,
         results: rows,

@@ -17,7 +17,6 @@ mod prediction;
 mod programs;
 mod reasons;
 mod recording;
-mod report;
 mod tasks;
 #[cfg(test)]
 mod tests;
@@ -25,33 +24,30 @@ mod tests;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_core::Counts;
-use sixfold_workload::pages::Policy;
+use sixfold_results::{Excluded, Need, PickReport, Policy};
 use sixfold_workload::{
     Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
     prepare_mix, tabulate,
 };
 
-pub use choice::{Choice, EQUAL_UP_TO, TurningPoint};
-pub use needs::Need;
 pub use prediction::{Predicted, Prediction, predict};
 pub(crate) use programs::Qualification;
 pub use programs::{ProgramSettings, pick_for_programs};
 pub use recording::{RecordError, RecordedProgram, record_program};
-pub use report::{
-    AskedCount, BreakEven, Excluded, MeshRanking, PartCost, PickReport, ProgramReport, Ranked,
-};
 
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
-use crate::engine::timer::Timer;
+use crate::engine::run::{start_run, with_memory};
+use crate::engine::timer;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{Settings, StudyError, needed_bytes};
 use crate::refusal::Candidate;
-use crate::results::run::{Run, RunSettings};
 use backend::PickBackend;
 use measurement::{Contestant, PickMeasurement};
 use pooled::Question;
+use sixfold_results::CacheState;
+use sixfold_results::RunSettings;
 use tasks::Tasks;
 
 /// The settings of [`pick`].
@@ -90,7 +86,7 @@ impl PickSettings {
             backends: self.backends.clone(),
             seed: self.seed,
             heap: self.heap,
-            ..RunSettings::of_effort(self.effort)
+            ..self.effort.run_settings()
         }
     }
 }
@@ -161,14 +157,14 @@ pub(crate) fn pick_on(
     }
     let clock = machine.clock();
     let budget = Budget::start(settings.effort, clock);
-    let run = Run::start(settings.run_settings());
+    let run = start_run(settings.run_settings());
     let needed = study_meshes
         .iter()
         .map(|study_mesh| needed(study_mesh, settings));
     let mut memory = machine
         .start_memory(settings.heap, CacheState::Warm, needed.max().unwrap_or(0))
         .map_err(StudyError::from)?;
-    let timer = Timer::measure(clock);
+    let timer = timer::measure(clock);
     let mut outcomes = Vec::new();
     for (i, study_mesh) in study_meshes.iter().enumerate() {
         if stop.load(Ordering::Relaxed) && i > 0 {
@@ -196,7 +192,7 @@ pub(crate) fn pick_on(
             max_memory: settings.max_memory,
         },
         timer,
-        run.with_memory(&memory),
+        with_memory(run, &memory),
         interrupted,
     ))
 }
@@ -233,11 +229,11 @@ fn qualified(
         let lacks = settings
             .needs
             .iter()
-            .find_map(|need| need.unmet_reason(&backend));
+            .find_map(|need| needs::unmet_reason(*need, &backend));
         let bytes = (backend.layout_bytes)(&candidate.counts) as u64;
         let excluded_because = match (lacks, settings.max_memory) {
             (Some(lacks), _) => Some(lacks),
-            (None, Some(most)) if bytes > most => Some(report::over_memory_limit(bytes, most)),
+            (None, Some(most)) if bytes > most => Some(needs::over_memory_limit(bytes, most)),
             _ => backend
                 .info
                 .check(polygons)

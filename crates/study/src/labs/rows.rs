@@ -1,15 +1,19 @@
 //! Makes the rows of a finding from the measured entries, for all labs.
 
-use sixfold_workload::{Time, TimedBackend};
+use sixfold_results::Time;
+use sixfold_workload::TimedBackend;
 
 use crate::engine::measure::Entry;
-use crate::engine::ranking::{rank, time};
-use crate::engine::statistics::{Median, median};
-use crate::results::rows::{Agreement, MeasuredTask, ResultRow};
+use sixfold_results::ranking::{rank, time};
+use sixfold_results::statistics::{Median, median};
+use sixfold_results::{Agreement, ResultRow};
 
 /// The measured entries of one task, which are compared with each other.
-pub(crate) struct Group<'g, T> {
-    pub(crate) task: T,
+pub(crate) struct Group<'g> {
+    /// The name of the task.
+    pub(crate) operation: &'g str,
+    /// The kind of the visited elements.
+    pub(crate) unit: &'g str,
     pub(crate) entries: &'g [Entry],
     /// The corrected time of each entry.
     pub(crate) times: &'g [Option<f64>],
@@ -20,13 +24,13 @@ pub(crate) struct Group<'g, T> {
     pub(crate) expected: Option<u64>,
 }
 
-impl<T: MeasuredTask> Group<'_, T> {
+impl Group<'_> {
     /// Returns a row for each entry with a time or an estimate. A backend that did other work than
     /// the others is not ranked.
     pub(crate) fn rows(
         &self,
         subjects: &[Box<dyn TimedBackend + '_>],
-    ) -> impl Iterator<Item = ResultRow<T>> {
+    ) -> impl Iterator<Item = ResultRow> {
         let samples: Vec<Vec<(u32, Time)>> = self.entries.iter().map(Entry::times).collect();
         let compared = self.agreements.iter().zip(self.times);
         let compared = compared.map(|(agreement, &ns)| {
@@ -58,14 +62,14 @@ impl<T: MeasuredTask> Group<'_, T> {
             Some(ResultRow {
                 case: String::new(),
                 backend: subjects[entry.subject].name().into(),
-                operation: self.task,
+                operation: self.operation.into(),
                 median_ns: time.map(|time| time.value),
                 uncorrected_ns: median(samples.iter().map(|(_, time)| time.ns()).collect()),
                 min_ns: time.map(|time| time.least),
                 ci_low_ns: interval.map(|[low, _]| low),
                 ci_high_ns: interval.map(|[_, high]| high),
                 elements,
-                per: self.task.unit().into(),
+                per: self.unit.into(),
                 ns_per_element: time.and_then(|time| per_element(time.value)),
                 wall_median_ns: wall.map(|wall| wall.value),
                 wall_min_ns: wall.map(|wall| wall.least),

@@ -1,7 +1,6 @@
 //! A whole study: builds the structures, measures them, compares the results, and makes the report.
 
 mod methods;
-pub(crate) mod report;
 pub(crate) mod sentences;
 
 use std::sync::atomic::AtomicBool;
@@ -11,32 +10,32 @@ use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, UnknownName
 use sixfold_core::Counts;
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::control::noise;
-use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
+use crate::engine::measure::corrected_entries;
 use crate::engine::measure::{Entry, Progress};
+use crate::engine::run::{start_run, with_memory};
+use crate::engine::timer;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
 use crate::labs::rows::Group;
-use crate::results::rows::{
+use sixfold_results::{
     Agreement, BackendRefusal, BackendReport, Control, Refusal, ResultRow, Samples,
 };
-use crate::results::run::{Run, RunSettings};
-pub use report::Report;
+use sixfold_results::{CacheState, noise};
+use sixfold_results::{Report, RunSettings};
 
-use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::refusal::Candidate;
+use sixfold_results::Policy;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::MachineClock;
 use sixfold_workload::Operation;
 use sixfold_workload::TimedBackend;
-use sixfold_workload::pages::{HeapPolicyConflict, Policy};
+use sixfold_workload::pages::HeapPolicyConflict;
 
 /// Maximum valence or degree of a mesh that counts as not skewed.
 const MAX_NEIGHBOURS: usize = 1000;
@@ -175,6 +174,25 @@ impl Settings {
         Ok(())
     }
 
+    /// Returns the settings that results have. A study does not know `triangulate` and `strict`, so both
+    /// are false.
+    pub fn run_settings(&self) -> RunSettings {
+        let externals = self.externals.iter().map(|other| other.name.clone());
+        let operations = self
+            .operations
+            .iter()
+            .map(|operation| operation.name().into());
+        RunSettings {
+            backends: self.backends.clone(),
+            externals: externals.collect(),
+            operations: operations.collect(),
+            seed: self.seed,
+            heap: self.heap,
+            caches: self.caches,
+            ..self.effort.run_settings()
+        }
+    }
+
     fn chosen_operations(&self) -> Vec<Operation> {
         let requested = |operation: &Operation| {
             self.operations.is_empty() || self.operations.contains(operation)
@@ -223,7 +241,7 @@ pub(crate) fn study_on(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces);
     }
-    let run = Run::start(RunSettings::of_study(settings));
+    let run = start_run(settings.run_settings());
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = needed_bytes(&chosen, &operations, &counts);
     let mut memory = machine.start_memory(settings.heap, settings.caches, needed)?;
@@ -267,7 +285,7 @@ pub(crate) fn study_on(
         let (subject, _) = backend.prepare(polygons, draw.as_ref()).ok()?;
         Some(machine.host(subject, &counts))
     });
-    let timer = Timer::measure(clock);
+    let timer = timer::measure(clock);
     let mut trial = Trial {
         counts,
         skewed,
@@ -289,7 +307,7 @@ pub(crate) fn study_on(
         ..
     } = measured;
     let subjects = &mut columns.subjects;
-    let timer = timer.with_entries(&entries);
+    let timer = timer::with_entries(timer, &entries);
     let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
     let results = results(
         &entries,
@@ -305,7 +323,7 @@ pub(crate) fn study_on(
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
     };
     let mut report = Report {
-        run: run.with_memory(&memory),
+        run: with_memory(run, &memory),
         mesh: study_mesh.report(),
         notes: sentences::notes(&backends, &results),
         backends,
@@ -398,11 +416,12 @@ pub(crate) fn results(
             continue;
         };
         let group = Group {
-            task: operation,
+            operation: operation.name(),
+            unit: operation.unit(),
             entries,
             times: &times[range.clone()],
             agreements: &agreements[range],
-            noise: noise(control, operation),
+            noise: noise(control, operation.name()),
             expected: Some(operation.estimated_elements(polygons) as u64),
         };
         rows.extend(group.rows(subjects));
@@ -415,7 +434,7 @@ pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>
         let reason = entry.refusal.clone()?;
         Some(Refusal {
             backend: subjects[entry.subject].name().into(),
-            operation: entry.operation()?,
+            operation: entry.operation()?.name().into(),
             kind: entry.refusal_kind,
             reason,
         })

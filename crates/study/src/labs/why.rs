@@ -10,29 +10,24 @@ mod sentences;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
 use sixfold::Relation;
+use sixfold_results::{Bound, Model, Reads, Timed, Why, WhyRow};
 use sixfold_workload::{
     Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MachineClock, MemorySpeed,
     ReadsObserver,
 };
-use sixfold_workload::{BufferSpeed, Operation, REACH, Reads, SCAN_SAMPLE};
+use sixfold_workload::{Operation, REACH, SCAN_SAMPLE};
 
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
+use crate::engine::run::start_run;
 use crate::inspect::{StudyMesh, unbuilt};
-use crate::labs::study::report::{Report, bytes_of};
 use crate::labs::study::{Settings, StudyError, study_on};
-use crate::numbers::bytes;
 use crate::refusal::Candidate;
-use crate::results::figure::{Counted, Figure, Status, samples_of};
-use crate::results::finding::LabFinding;
-use crate::results::read::ReadError;
-use crate::results::rows::{
-    Agreement, BackendReport, MeshReport, ResultRow, Samples, check_samples,
-};
-use crate::results::run::{Run, RunSettings};
+use sixfold_results::BackendReport;
+use sixfold_results::Report;
+use sixfold_results::numbers::bytes;
 
 /// The stage before the times are measured.
 const MEASURING_MEMORY: Progress<'_> = Progress {
@@ -63,168 +58,14 @@ pub struct Timing {
     pub effort: Effort,
 }
 
-/// The memory that queries read on each structure, compared with the times of the queries.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Why {
-    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
-    #[serde(skip)]
-    pub run: Run,
-    /// The name, facts and hashes of the mesh. In JSON, the finding has the place of the mesh in
-    /// `meshes`.
-    #[serde(skip)]
-    pub mesh: MeshReport,
-    /// The backends, in the order of [`Backend::structures`].
-    pub backends: Vec<BackendReport>,
-    /// The model of the processor cache with which reads are counted.
-    pub model: Model,
-    /// The speed of reading buffers of growing size; `None` if no times were measured.
-    pub memory: Option<Vec<BufferSpeed>>,
-    /// The results, sorted by relation, then in the order of [`Backend::structures`].
-    pub rows: Vec<WhyRow>,
-    /// The times of all samples; empty if no times were measured.
-    pub samples: Vec<Samples>,
-    /// Sentences about the results; empty in older documents, and if the counting was stopped.
-    #[serde(default)]
-    pub sentences: Vec<String>,
-    /// Sentences about possible faults of the measurement and their remedies.
-    pub warnings: Vec<String>,
-    /// True if the measurement was stopped early. Some rows or times may then be missing.
-    pub interrupted: bool,
-}
-
-/// The model of the processor cache with which reads are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct Model {
-    /// Size of a cache line, in bytes.
-    pub line_bytes: usize,
-    /// Number of cache lines in the modelled cache. A full cache drops the line that was loaded
-    /// first.
-    pub cache_lines: u64,
-    /// A jump is the loading of a cache line that is more than this number of cache lines away from
-    /// every cached line.
-    pub reach: usize,
-    /// Number of queried elements if only a sample of the elements is queried.
-    pub sample: usize,
-    /// If a query reads more table rows than this number on average, only a sample of the elements
-    /// is queried.
-    pub most_reads: u64,
-}
-
-impl Model {
-    /// The model that this version of Sixfold uses.
-    pub const CURRENT: Self = Self {
-        line_bytes: LINE_BYTES,
-        cache_lines: CACHE_LINES,
-        reach: REACH,
-        sample: SCAN_SAMPLE,
-        most_reads: MAX_READS,
-    };
-}
-
-/// The reads and the time of one relation on one backend.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct WhyRow {
-    /// The name of the backend, such as `half-edge`.
-    pub backend: String,
-    /// The kind of the elements that are queried: `vertex`, `edge` or `face`.
-    pub per: String,
-    /// The numbers of table reads.
-    #[serde(flatten)]
-    pub reads: Reads,
-    /// The time of the queries; `None` if no time was measured.
-    pub timed: Option<Timed>,
-}
-
-/// The time of querying a relation at all elements (a sweep), and the explanation of this time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Timed {
-    /// The median time per element, in nanoseconds.
-    pub ns_per_element: f64,
-    /// True if only a sample of the elements was timed.
-    pub sampled: bool,
-    /// The comparison of the checksum with the checksums of other backends.
-    pub agreement: Agreement,
-    /// The speed of reading a buffer as large as the memory that all queries together read.
-    pub speed: BufferSpeed,
-    /// The computed time for a sequential read of the bytes that one element needs, in nanoseconds.
-    pub floor_ns: f64,
-    /// The computed time for the jumps of one element if the jumps do not overlap, in nanoseconds.
-    /// A jump loads a cache line that is not near any cached line.
-    pub waits_ns: f64,
-    /// The factor that limits the speed of the queries.
-    pub bound: Bound,
-}
-
-sixfold_core::named! {
-    /// The factor that limits the speed of a sweep (querying a relation at all elements).
-    pub enum Bound: "limiting factor" {
-        /// The transfer of bytes from memory limits the speed.
-        Bandwidth = "bandwidth",
-        /// The wait for cache lines that a prefetcher cannot predict limits the speed.
-        Latency = "latency",
-        /// Computation on data in the cache limits the speed.
-        Work = "work",
-    }
-}
-
-impl Bound {
-    /// Returns the factor that limits a query that takes `ns` nanoseconds. `floor_ns` is the time
-    /// for the transfer of the bytes that the query reads. `waits_ns` is the time for all jumps to
-    /// distant cache lines if the jumps do not overlap.
-    ///
-    /// - `Bandwidth` if `floor_ns` is at least half of `ns`.
-    /// - `Latency` if `floor_ns` is less than half of `ns`, and `waits_ns` is at least half of
-    ///   `ns`. A processor overlaps jumps, so the jumps may take less time than `waits_ns`.
-    /// - `Work` in all other cases.
-    pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
-        if 2.0 * floor_ns >= ns {
-            Self::Bandwidth
-        } else if 2.0 * waits_ns >= ns {
-            Self::Latency
-        } else {
-            Self::Work
-        }
-    }
-}
-
-impl LabFinding for Why {
-    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let figure = |row: &'s WhyRow| {
-            let operation = Operation::Relation(row.reads.relation);
-            let status = match row.timed.map(|timed| timed.sampled) {
-                None => Status::Counted,
-                Some(true) => Status::Sampled,
-                Some(false) => Status::Measured,
-            };
-            let elements = row.reads.elements;
-            let samples = samples_of(&self.samples, "", operation.name(), &row.backend);
-            let each = row.timed.map(|timed| timed.ns_per_element);
-            let times = ResultRow {
-                median_ns: each.map(|ns| ns * elements as f64),
-                ns_per_element: each,
-                elements: Some(elements),
-                per: row.per.clone(),
-                sampled: status == Status::Sampled,
-                agreement: row
-                    .timed
-                    .map_or(Agreement::Unchecked, |timed| timed.agreement),
-                samples: samples.map_or(0, |samples| samples.rounds.len()),
-                ..ResultRow::new(&row.backend, operation)
-            };
-            let bytes = bytes_of(&self.backends, &row.backend);
-            Figure {
-                samples,
-                counted: Counted::from(&row.reads),
-                ..Figure::new(Some(&self.mesh), bytes, status, times.named())
-            }
-        };
-        self.rows.iter().map(figure).collect()
-    }
-
-    fn check(&self) -> Result<(), ReadError> {
-        check_samples(&self.samples)
-    }
-}
+/// The model that this version of Sixfold uses.
+const CURRENT_MODEL: Model = Model {
+    line_bytes: LINE_BYTES,
+    cache_lines: CACHE_LINES,
+    reach: REACH,
+    sample: SCAN_SAMPLE,
+    most_reads: MAX_READS,
+};
 
 /// Counts the memory reads of relations on the backends that can hold the mesh. If
 /// `settings.timing` is set, also measures the times of the relations.
@@ -268,7 +109,7 @@ pub(crate) fn why_on(
     // Counting has no time limit.
     let no_time = Effort::Budget(Duration::ZERO);
     study_settings.effort = settings.timing.map_or(no_time, |timing| timing.effort);
-    let mut run = Run::start(RunSettings::of_study(&study_settings));
+    let mut run = start_run(study_settings.run_settings());
     let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
     // The sort is stable: the rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
@@ -300,7 +141,7 @@ pub(crate) fn why_on(
         mesh: study_mesh.report(),
         backends,
         sentences,
-        model: Model::CURRENT,
+        model: CURRENT_MODEL,
         memory: memory.map(|memory| memory.speeds().to_vec()),
         rows,
         samples,
@@ -378,10 +219,9 @@ fn left_out_buffers(memory: &MemorySpeed) -> Option<String> {
 
 /// Returns the time from the report, compared with the speed of memory.
 fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
-    let mut results = report.rows(Operation::Relation(row.reads.relation));
-    let result = results.find(|result| result.backend == row.backend)?;
+    let result = report.row(row.reads.relation.name(), &row.backend)?;
     let ns_per_element = result.ns_per_element?;
-    let speed = memory.at(row.reads.sweep_bytes());
+    let speed = memory.at(row.reads.sweep_bytes(LINE_BYTES));
     let floor_ns = row.reads.moved_bytes / speed.gb_per_s;
     let waits_ns = row.reads.jumps * speed.latency_ns;
     Some(Timed {
@@ -400,6 +240,8 @@ mod tests {
     use sixfold::shapes;
 
     use std::num::NonZeroU32;
+
+    use sixfold_results::Counted;
 
     use super::*;
     use crate::engine::simulated_machine::SimulatedMachine;
@@ -485,7 +327,7 @@ mod tests {
         assert_eq!(timed.floor_ns, floor);
         assert_eq!(timed.waits_ns, row.reads.jumps * timed.speed.latency_ns);
         assert!((timed.ns_per_element - 10_000.0 / vertices).abs() < 1e-6);
-        assert_eq!(why.mismatches(), 0);
+        assert_eq!(sixfold_results::Finding::from(why.clone()).mismatches(), 0);
         let [figure] = &why.figures()[..] else {
             panic!("one figure");
         };

@@ -5,9 +5,10 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::prelude::*;
 use sixfold::{Split, shapes};
+use sixfold_results::{PickReport, Results};
 use sixfold_study::{
-    EditProgram, Effort, MovingProgram, Outcome, PickError, PickReport, Program, ProgramSettings,
-    RefineProgram, Results, StudyMesh, Suite, WalkProgram, pick_for_programs,
+    EditProgram, Effort, MovingProgram, Outcome, PickError, Program, ProgramSettings,
+    RefineProgram, StudyMesh, Suite, WalkProgram, pick_for_programs,
 };
 
 fn measure_with(suite: &Suite, mesh: StudyMesh, settings: &ProgramSettings) -> Vec<PickReport> {

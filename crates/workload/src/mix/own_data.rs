@@ -8,7 +8,7 @@ use sixfold::PolygonMesh;
 
 use crate::mix::route::Route;
 use crate::operation::ElementKind;
-use crate::workload::OwnData;
+use sixfold_results::OwnData;
 
 /// Bytes in a word. The data are read and written word by word.
 const WORD: usize = 8;
@@ -36,7 +36,7 @@ impl OwnMemory {
         let mut numbers = route.record_numbers();
         let counts = [polygons.vertex_count(), edges, polygons.face_count()];
         Self(ElementKind::ALL.map(|kind| {
-            let bytes = data.of(kind);
+            let bytes = kind.own_bytes(data);
             let [read, written] = [bytes.read, bytes.written].map(|b| (b as usize).div_ceil(WORD));
             let stride = read.max(written);
             (stride > 0).then(|| Records {
@@ -90,7 +90,8 @@ mod tests {
     use sixfold::shapes;
 
     use super::*;
-    use crate::workload::{Access, OwnBytes};
+    use crate::workload::Access;
+    use sixfold_results::OwnBytes;
 
     fn memory(access: Access, data: &OwnData) -> OwnMemory {
         let torus = shapes::triangle_torus(4, 3).expect("small");

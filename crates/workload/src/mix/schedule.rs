@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use sixfold_core::Counts;
 
-use crate::workload::{Action, OwnData, Part, Workload};
+use crate::workload::{Action, Part, Workload};
+use sixfold_results::OwnData;
 
 /// Number of element operations in a turn.
 const TURN_OPERATIONS: f64 = 256.0;

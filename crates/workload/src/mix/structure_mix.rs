@@ -409,7 +409,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         &mut self,
         series: &Series<'_>,
         run: impl Fn(&Work<'a, M, W>, &mut M) -> Counts,
-    ) -> (crate::clock::Time, Counts) {
+    ) -> (sixfold_results::Time, Counts) {
         let Self {
             work,
             prepared,

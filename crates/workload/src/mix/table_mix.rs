@@ -7,7 +7,6 @@ use sixfold::{MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation
 use sixfold_relation_table::Numbering;
 
 use crate::backend::Backend;
-use crate::clock::Time;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::passes::pass_over;
@@ -21,6 +20,7 @@ use crate::series::Series;
 use crate::sweeps::Outputs;
 use crate::tables::{TABLE_TYPE, TABLES, Tables, time_building};
 use crate::workload::Action;
+use sixfold_results::Time;
 
 /// Builds the structure of `backend` from `polygons`, and copies the relations that `schedule`
 /// queries into flat tables. Returns `None` if the structure cannot hold `polygons` or if an

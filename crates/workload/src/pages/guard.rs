@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::{
-    HeapReport, Policy, counts_faults, faults, page_bytes, pages_of, platform,
-    transparent_huge_pages, untouched_block,
+    counts_faults, faults, page_bytes, pages_of, platform, transparent_huge_pages, untouched_block,
 };
+use sixfold_results::{HeapReport, Policy};
 
 /// Size of the block that tests whether pages are kept, in bytes.
 const PROBE_BYTES: usize = 16 << 20;
@@ -84,7 +84,8 @@ pub struct HeapPolicyConflict {
 /// # Examples
 ///
 /// ```standalone_crate
-/// use sixfold_workload::pages::{HeapGuard, Policy};
+/// use sixfold_results::Policy;
+/// use sixfold_workload::pages::HeapGuard;
 ///
 /// let guard = HeapGuard::acquire(Policy::Kept)?;
 /// let error = HeapGuard::acquire(Policy::System).unwrap_err();

@@ -10,11 +10,11 @@ use super::Program;
 use super::forms::Queries;
 use super::recorded::Recorded;
 use super::subject::{ProgramRefusal, checked, guarded, message, record};
-use crate::clock::Time;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::operation::Operation;
 use crate::series::Series;
 use crate::tables::{TABLES, Tables, time_building};
+use sixfold_results::Time;
 
 /// The structure from which the tables are made. It holds every mesh.
 pub(super) type MadeFrom = FaceVertexMesh;

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::tape::{Tape, TapeState, TapedRun, Watched};
+use sixfold_results::AskedCount;
+
 use crate::operation::ElementKind;
 use crate::trace::{Trace, TracedEdit};
 use sixfold::{
@@ -30,7 +32,7 @@ pub struct Asked {
 
 impl Asked {
     /// Returns the names and the counts of what was asked at least once, the most frequent first.
-    pub fn counts(&self) -> Vec<(&'static str, u64)> {
+    pub fn counts(&self) -> Vec<AskedCount> {
         let relations = Relation::ALL
             .map(Relation::name)
             .into_iter()
@@ -40,7 +42,11 @@ impl Asked {
         let mut counts: Vec<(&str, u64)> = relations.chain(others).chain(edits).collect();
         counts.retain(|&(_, count)| count > 0);
         counts.sort_by_key(|&(_, count)| Reverse(count));
-        counts
+        let counts = counts.into_iter().map(|(operation, count)| AskedCount {
+            operation: operation.into(),
+            count,
+        });
+        counts.collect()
     }
 }
 
@@ -457,6 +463,12 @@ mod tests {
         Recorded::from_polygons(&shapes::icosahedron()).expect("a closed manifold")
     }
 
+    /// Returns the names and the counts.
+    fn counts(asked: &Asked) -> Vec<(String, u64)> {
+        let counts = asked.counts().into_iter();
+        counts.map(|asked| (asked.operation, asked.count)).collect()
+    }
+
     #[test]
     fn each_relation_is_counted_once() {
         let mesh = recorded::<HalfEdgeMesh>();
@@ -498,8 +510,9 @@ mod tests {
             ("vertex_faces", 1),
             ("edge_faces", 1),
             ("face_edges", 1),
-        ];
-        assert_eq!(asked.counts(), expected);
+        ]
+        .map(|(name, count)| (name.to_owned(), count));
+        assert_eq!(counts(&asked), expected);
     }
 
     #[test]
@@ -520,8 +533,8 @@ mod tests {
         let new = mesh.vertices().filter(|&v| numbers[v] == 1);
         assert_eq!(new.count(), 1);
         let asked = mesh.take();
-        let expected = [Edit::SplitEdge, Edit::Compact].map(|edit| (edit.name(), 1));
-        assert_eq!(asked.counts(), expected);
+        let expected = [Edit::SplitEdge, Edit::Compact].map(|edit| (edit.name().to_owned(), 1));
+        assert_eq!(counts(&asked), expected);
         assert_eq!(mesh.memory(), mesh.mesh.memory());
         assert!(mesh.validate().is_ok());
     }

@@ -9,7 +9,8 @@ use super::tape::TapedRun;
 use crate::mix::Route;
 use crate::operation::ElementKind;
 use crate::trace::{Op, Trace};
-use crate::workload::{Access, Action, Amount, OwnData, Part, Workload};
+use crate::workload::{Access, Action, Amount, Part, Workload};
+use sixfold_results::OwnData;
 
 /// The number of elements of a cache line in the model of a cache: each element has 16 bytes.
 const PER_LINE: u32 = 4;

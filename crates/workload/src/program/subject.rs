@@ -10,10 +10,10 @@ use sixfold::{BuildError, MeshQuery, PolygonMesh, QueryCost, Representation};
 use super::forms::Form;
 use super::recorded::{Asked, Recorded};
 use super::tape::TapedRun;
-use crate::clock::Time;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::operation::Operation;
 use crate::series::{ReusedCopies, Series, time_making};
+use sixfold_results::Time;
 
 /// The reason why a program does not run on a structure.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

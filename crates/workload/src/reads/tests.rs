@@ -55,7 +55,7 @@ fn corners_of_a_triangle_are_twelve_bytes_in_one_or_two_lines() {
     assert_eq!((reads.answers, reads.reads, reads.bytes), (3.0, 3.0, 12.0));
     assert_eq!(reads.lines, 18.0 / 16.0);
     assert_eq!(
-        (reads.sweep_lines, reads.sweep_bytes()),
+        (reads.sweep_lines, reads.sweep_bytes(LINE_BYTES)),
         (3, 192),
         "16 × 12"
     );

@@ -3,8 +3,7 @@
 use std::hint::black_box;
 
 use super::queries::{Input, Triangle, Vertex};
-use super::tasks::{EIGHT, SpatialTask};
-use crate::clock::{Clock, Time};
+use crate::clock::Clock;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::series::Series;
 use sixfold::spatial::{
@@ -12,6 +11,8 @@ use sixfold::spatial::{
     SurfaceQueries, UniformGrid,
 };
 use sixfold::{QueryCost, VertexId};
+use sixfold_results::SpatialTask;
+use sixfold_results::Time;
 
 /// The name of the list, which visits all elements for each query.
 pub const LIST: &str = "list";
@@ -103,7 +104,7 @@ impl<V: SpatialIndex<Vertex>, T: SpatialIndex<Triangle>> Indices<'_, V, T> {
                 let mut found = Vec::new();
                 let mut sum = 0.0;
                 for &point in points {
-                    self.vertices.nearest_k_into(point, EIGHT, &mut found);
+                    self.vertices.nearest_k_into(point, 8, &mut found);
                     sum += found.iter().map(|n| n.vertex.index() as f64).sum::<f64>();
                 }
                 sum

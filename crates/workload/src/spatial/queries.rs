@@ -7,6 +7,7 @@ use sixfold::spatial::{
     FaceTriangle, Ray, SpatialError, VertexPoint, polygon_points, polygon_triangles,
 };
 use sixfold::{FaceId, PolygonMesh, VertexId};
+use sixfold_results::QueryPoints;
 
 /// Maximum number of query points.
 pub const MAX_QUERIES: usize = 10_000;
@@ -22,21 +23,6 @@ pub type Vertex = VertexPoint<VertexId>;
 /// An item of the indices of triangles.
 pub type Triangle = FaceTriangle<FaceId>;
 
-sixfold_core::named! {
-    /// Where the query points are.
-    #[derive(Default)]
-    #[non_exhaustive]
-    pub enum QueryPoints: "set of query points" {
-        /// Near the surface: vertices, each moved by up to 1 % of the diagonal of the bounding box,
-        /// in the order of the mesh. Registration and the distance between similar meshes have such
-        /// queries.
-        #[default]
-        Near = "near",
-        /// Anywhere in the bounding box, in random order. Signed distance fields have such queries.
-        Box = "box",
-    }
-}
-
 /// The input of all indices: what they store, and what they are asked.
 pub struct Input {
     /// The vertices of the mesh.
@@ -47,7 +33,7 @@ pub struct Input {
     pub points: Vec<DVec3>,
     /// A ray from each query point to another query point.
     pub rays: Vec<Ray>,
-    /// The radius of [`SpatialTask::VerticesWithin`](super::SpatialTask::VerticesWithin).
+    /// The radius of [`SpatialTask::VerticesWithin`](sixfold_results::SpatialTask::VerticesWithin).
     pub radius: f64,
 }
 

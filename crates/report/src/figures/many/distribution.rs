@@ -1,8 +1,8 @@
 //! The spread over the meshes: a panel for each kind of work, and in it a dot for each mesh and structure.
 
 use serde::Serialize;
-use sixfold_study::numbers::{counted, grouped, rounded_down, times};
-use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
+use sixfold_results::numbers::{counted, grouped, rounded_down, times};
+use sixfold_results::{Group, Overall, Pool, Purpose, leaders};
 
 use super::{Mesh, leaders_of};
 use crate::Picture;
@@ -158,7 +158,11 @@ fn panel<'m>(
 
 fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64 + 4.0);
-    canvas.text([0.0, 14.0], panel.purpose.name(), Style::new(14).bold(true));
+    canvas.text(
+        [0.0, 14.0],
+        panel.purpose.title(),
+        Style::new(14).bold(true),
+    );
     let meshes = counted(panel.meshes, "mesh", "meshes");
     let meshes = format!(
         "time divided by that of {}; means over {meshes}",
@@ -255,7 +259,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
                 ratios.reduce(pick).map_or_else(|| "–".into(), times)
             };
             table.row(vec![
-                panel.purpose.name().to_lowercase(),
+                panel.purpose.title().to_lowercase(),
                 mean.backend.clone(),
                 line.text.clone(),
                 panel.leader.to_owned(),
@@ -273,7 +277,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
 
 fn csv(panels: &[Panel<'_>]) -> String {
     let rows = panels.iter().flat_map(|panel| {
-        let work = panel.purpose.name().to_lowercase();
+        let work = panel.purpose.title().to_lowercase();
         panel.lines.iter().flat_map(move |line| {
             let work = work.clone();
             line.dots.iter().map(move |dot| DotRow {

@@ -1,7 +1,7 @@
 //! The answer by size and kind of mesh.
 
-use sixfold_study::numbers::{counted, grouped, list};
-use sixfold_study::{Overall, Pool, Purpose, Report, leaders, overall};
+use sixfold_results::numbers::{counted, grouped, list};
+use sixfold_results::{Overall, Pool, Purpose, Report, leaders, overall};
 
 use super::{Mesh, names};
 use crate::figure::{Table, TitledTable};
@@ -164,7 +164,7 @@ pub(super) fn means(pool: &Pool, groups: &[Means]) -> Option<TitledTable> {
             let mut line = vec![
                 group.name.clone(),
                 grouped(first.meshes),
-                purpose.name().to_lowercase(),
+                purpose.title().to_lowercase(),
             ];
             line.extend(pool.compared.iter().map(|backend| {
                 let row = rows.iter().find(|row| row.backend == *backend);

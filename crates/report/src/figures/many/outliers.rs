@@ -1,7 +1,8 @@
 //! Meshes on which a structure behaves unlike on the others.
 
-use sixfold_study::numbers::{counted, times};
-use sixfold_study::{Pool, Purpose, median_and_deviation};
+use sixfold_results::numbers::{counted, times};
+use sixfold_results::statistics::median_and_deviation;
+use sixfold_results::{Pool, Purpose};
 
 use super::{Mesh, Relative, kind, leaders_of};
 use crate::figure::{Table, TitledTable};
@@ -52,7 +53,7 @@ pub(super) fn table(pool: &Pool, meshes: &[Mesh<'_>]) -> Option<TitledTable> {
         let faces = counted(mesh.study.mesh.facts.faces, "face", "faces");
         let cells = vec![
             mesh.name.clone(),
-            outlier.purpose.name().to_lowercase(),
+            outlier.purpose.title().to_lowercase(),
             outlier.leader.to_owned(),
             shown(outlier),
             format!("{}, {faces}", kind(mesh.study)),

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use serde::Serialize;
 use sixfold::Edit;
 use sixfold_explain::{EditTrace, Elements, ReadRows, Refused, RowChange};
-use sixfold_study::numbers::{counted, grouped};
+use sixfold_results::numbers::{counted, grouped};
 
 use super::{Begun, begin, rows};
 use crate::arguments;

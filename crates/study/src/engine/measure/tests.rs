@@ -9,13 +9,14 @@ use sixfold::subdivision::Method;
 use sixfold::{QueryCost, Relation};
 
 use super::*;
-use crate::engine::control::{control, noise};
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::control::control;
+use crate::engine::heap::Memory;
 use crate::engine::plan::MIN_ELEMENTS;
 use crate::engine::simulated_machine::SimulatedMachine;
-use crate::engine::statistics::Median;
 use crate::engine::trial::Columns;
 use sixfold_core::Counts;
+use sixfold_results::statistics::Median;
+use sixfold_results::{CacheState, noise};
 
 struct Synthetic {
     machine: SimulatedMachine,
@@ -228,7 +229,7 @@ fn the_control_shows_a_difference_of_its_two_entries() {
     let planted = control(&entries, 0, 2, "synthetic").expect("samples");
     for row in &planted.operations {
         assert!(row.is_unsteady(), "{row:?}");
-        assert!(noise(Some(&planted), row.operation) >= 1.19, "{row:?}");
+        assert!(noise(Some(&planted), &row.operation) >= 1.19, "{row:?}");
     }
     let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
     let steady = control(&entries, 0, 2, "synthetic").expect("samples");
@@ -429,10 +430,10 @@ fn a_control_shows_the_noise_of_a_drifting_machine() {
         "{control:?}"
     );
     for row in &control.operations {
-        let noise = noise(Some(&control), row.operation);
+        let noise = noise(Some(&control), &row.operation);
         assert!(noise >= row.difference() && noise >= 1.02);
     }
-    assert_eq!(noise(None, VV), 1.02);
+    assert_eq!(noise(None, VV.name()), 1.02);
 }
 
 #[test]

@@ -1,49 +1,11 @@
 //! Lines fitted to the times, and the sizes at which structures become larger than caches.
 
-use serde::{Deserialize, Serialize};
 use sixfold_core::Counts;
 
-use super::SizeReport;
 use super::settings::scaled;
-use crate::labs::slope::Slope;
-use sixfold_workload::Cache;
+use sixfold_results::Cache;
+use sixfold_results::{CacheLimit, Fit, SizeReport, Slope};
 use sixfold_workload::{Backend, Operation};
-
-/// How the time of one operation on one backend grows with the number of faces.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Fit {
-    /// The name of the backend, such as `half-edge`.
-    pub backend: String,
-    /// The measured operation, such as `vertex_normal`.
-    pub operation: Operation,
-    /// True if the operation scans all faces of the mesh for each element on this backend.
-    pub scans: bool,
-    /// The line fitted to the measured times at all sizes; `None` with fewer than two such sizes.
-    /// An estimate is not on the line, because it assumes how the time grows.
-    pub all: Option<Slope>,
-    /// The line fitted to the times at the sizes for which the structure fits into the last-level
-    /// cache. `None` if the structure fits at fewer than two sizes, or if the caches are unknown.
-    pub in_cache: Option<Slope>,
-    /// The line fitted to the times at the sizes for which the structure is larger than the
-    /// last-level cache. `None` if the structure is larger than the cache at fewer than two sizes,
-    /// or if the caches are unknown.
-    pub beyond: Option<Slope>,
-    /// Number of sizes at which the time is an estimate, and the line has no point.
-    pub estimated: usize,
-}
-
-/// The number of faces at which a structure becomes larger than a cache.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct CacheLimit {
-    /// The name of the backend, such as `half-edge`.
-    pub backend: String,
-    /// Level of the cache.
-    pub level: u8,
-    /// Size of the cache, in bytes.
-    pub cache_bytes: u64,
-    /// The smallest number of faces at which the structure is larger than the cache.
-    pub faces: usize,
-}
 
 pub(super) fn fits(
     sizes: &[SizeReport],
@@ -59,7 +21,7 @@ pub(super) fn fits(
             for size in sizes {
                 let row = size.results.iter();
                 let mut row =
-                    row.filter(|r| r.operation == operation && r.backend == backend.name());
+                    row.filter(|r| r.operation == operation.name() && r.backend == backend.name());
                 let memory = size
                     .backend_bytes
                     .iter()
@@ -84,7 +46,7 @@ pub(super) fn fits(
             let known = last_level_bytes.is_some();
             fits.push(Fit {
                 backend: backend.name().into(),
-                operation,
+                operation: operation.name().into(),
                 scans: operation.scans(&backend.info.costs).contains(&true),
                 all: slope(&|_| true),
                 in_cache: slope(&|fits| known && fits),
@@ -134,15 +96,15 @@ pub(super) fn cache_limits(
 mod tests {
     use super::*;
     use crate::labs::growth::BackendBytes;
-    use crate::results::rows::ResultRow;
     use sixfold::{Facts, shapes};
+    use sixfold_results::ResultRow;
 
     fn size(faces: usize, bytes: usize, ns: f64, estimated: bool) -> SizeReport {
         let operation = Operation::Boundary;
         let row = ResultRow {
             median_ns: (!estimated).then_some(ns),
             estimated_ns: estimated.then_some(ns),
-            ..ResultRow::new("half-edge", operation)
+            ..ResultRow::new("half-edge", operation.name(), operation.unit())
         };
         SizeReport {
             vertices: 0,

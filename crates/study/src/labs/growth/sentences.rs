@@ -1,10 +1,11 @@
 //! Sentences about the results of one shape in several sizes.
 
-use super::{CacheLimit, Fit, SizeReport};
-use crate::labs::slope::Slope;
-use crate::numbers::{grouped, list, times};
-use crate::results::rows::{Agreement, ResultRow, Standing};
-use sixfold_workload::{Cache, Operation, last_level_bytes};
+use super::{CacheLimit, Fit};
+use sixfold_results::numbers::{grouped, list, times};
+use sixfold_results::{Agreement, ResultRow, Standing};
+use sixfold_results::{Cache, last_level_bytes};
+use sixfold_results::{SizeReport, Slope};
+use sixfold_workload::Operation;
 
 pub(super) fn sentences(
     sizes: &[SizeReport],
@@ -22,7 +23,7 @@ pub(super) fn sentences(
     for size in sizes {
         for row in &size.results {
             if row.agreement == Agreement::Mismatch {
-                let (backend, operation) = (&row.backend, row.operation);
+                let (backend, operation) = (&row.backend, &row.operation);
                 sentences.push(format!(
                     "{operation} on {backend} gives different results from the other backends at \
                      {} faces. This is a fault in Sixfold: please report it.",
@@ -154,7 +155,7 @@ impl Leader<'_> {
 /// if it is longer than the fastest measured time.
 fn fastest(sizes: &[SizeReport]) -> Vec<String> {
     let mut sentences = Vec::new();
-    for operation in Operation::ALL {
+    for operation in Operation::ALL.map(Operation::name) {
         let rows = |size| {
             let measured = rows_of(size, operation).filter_map(|row| row.median_ns);
             let least = measured.min_by(f64::total_cmp).unwrap_or(f64::INFINITY);
@@ -201,7 +202,7 @@ fn fastest(sizes: &[SizeReport]) -> Vec<String> {
     sentences
 }
 
-fn rows_of(size: &SizeReport, operation: Operation) -> impl Iterator<Item = &ResultRow> {
+fn rows_of<'s>(size: &'s SizeReport, operation: &str) -> impl Iterator<Item = &'s ResultRow> {
     let rows = size.results.iter();
     rows.filter(move |row| row.operation == operation)
 }
@@ -264,7 +265,11 @@ mod tests {
                 (_, true) => Standing::Slower,
                 (_, false) => Standing::Tied,
             }),
-            ..ResultRow::new(backend, Operation::Boundary)
+            ..ResultRow::new(
+                backend,
+                Operation::Boundary.name(),
+                Operation::Boundary.unit(),
+            )
         };
         SizeReport {
             vertices: faces,
@@ -328,7 +333,7 @@ mod tests {
     fn estimates_are_counted_over_all_lines() {
         let fit = |estimated| Fit {
             backend: "polygon-soup".into(),
-            operation: Operation::Boundary,
+            operation: Operation::Boundary.name().into(),
             scans: true,
             all: None,
             in_cache: None,

@@ -10,7 +10,7 @@ use crate::engine::effort::Effort;
 use crate::inspect::{StudyMesh, inspect};
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
-use crate::results::rows::{BackendRefusal, BackendReport};
+use sixfold_results::{BackendRefusal, BackendReport};
 use sixfold_workload::{Backend, Operation};
 
 /// Minimum number of faces. Smaller meshes are too short to time.

@@ -1,7 +1,7 @@
 //! Sentences on the memory of the backends.
 
-use super::{Audit, BackendAudit};
-use crate::numbers::{figure, grouped, list};
+use sixfold_results::numbers::{figure, grouped, list};
+use sixfold_results::{Audit, BackendAudit};
 
 /// Describes the memory of the backends that hold the mesh: the least memory, the peaks, and
 /// whether the three counts agree.

@@ -1,17 +1,6 @@
 //! Which index costs the least time for a number of queries, building included.
 
-use serde::{Deserialize, Serialize};
-
-/// The cheapest index for a range of numbers of queries.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Cheapest {
-    /// The smallest number of queries of the range; at least 1. The range ends before the start of
-    /// the next range.
-    pub from: u64,
-    /// The name of the index, such as `bvh`.
-    pub index: String,
-}
-
+use sixfold_results::Cheapest;
 /// The time to build an index and the time of one query, in nanoseconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cost<'n> {

@@ -1,8 +1,8 @@
 //! The sentences of the report.
 
-use super::{Cheapest, NeighboursReport, SpatialTask};
-use crate::numbers::{grouped, list, rounded};
-use crate::results::rows::Standing;
+use super::SpatialTask;
+use sixfold_results::numbers::{grouped, list, rounded};
+use sixfold_results::{Cheapest, NeighboursReport, Standing};
 
 /// Returns the fastest indices of all tasks, then for each kind of query the index with the least
 /// total time, and the noise.
@@ -10,7 +10,7 @@ pub(super) fn sentences(report: &NeighboursReport) -> Vec<String> {
     let mut sentences: Vec<String> = fastest(report).into_iter().collect();
     for query in &report.cheapest {
         if let Some(ranges) = in_words(&query.ranges) {
-            let task = query.operation;
+            let task = &query.operation;
             sentences.push(format!(
                 "{task}, building included: least time with {ranges}."
             ));
@@ -30,7 +30,7 @@ fn fastest(report: &NeighboursReport) -> Option<String> {
     let mut winners: Vec<(String, Vec<SpatialTask>)> = Vec::new();
     for task in SpatialTask::ALL {
         let best = report
-            .rows(task)
+            .rows(task.name())
             .filter(|row| matches!(row.standing, Some(Standing::Best | Standing::Tied)));
         let names: Vec<&str> = best.map(|row| row.backend.as_str()).collect();
         let names = names.join(" or ");

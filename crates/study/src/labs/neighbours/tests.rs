@@ -6,7 +6,7 @@ use sixfold_workload::Task;
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
-use crate::results::document::Results;
+use sixfold_results::Results;
 
 /// Costs in nanoseconds: to build an index, and to query it with a point for each vertex.
 fn costs(work: &Work<'_>) -> f64 {
@@ -63,7 +63,7 @@ fn all_indices_give_the_same_answers() {
         for (figure, row) in report.figures().iter().zip(&report.results) {
             let expected = ResultRow {
                 case: points.name().into(),
-                ..row.named()
+                ..row.clone()
             };
             assert_eq!(figure.row, expected);
         }
@@ -76,11 +76,11 @@ fn all_indices_give_the_same_answers() {
             rows.map(|row| row.backend.as_str()).collect::<Vec<_>>()
         };
         // 9,002 vertices and queries: the list may visit 4 million.
-        assert_eq!(sampled(SpatialTask::NearestVertex), ["list"]);
-        assert_eq!(sampled(SpatialTask::BuildVertices), [""; 0]);
+        assert_eq!(sampled(SpatialTask::NearestVertex.name()), ["list"]);
+        assert_eq!(sampled(SpatialTask::BuildVertices.name()), [""; 0]);
         // Each vertex of a ball is found by a query near it, and its neighbours within the radius.
         let within = report
-            .rows(SpatialTask::VerticesWithin)
+            .rows(SpatialTask::VerticesWithin.name())
             .nth(1)
             .expect("a row");
         assert!(within.checksum > Some(0.0));
@@ -98,7 +98,11 @@ fn the_cheapest_index_changes_with_the_number_of_queries_on_any_machine() {
             };
             let machine = SimulatedMachine::with_costs(costs).at_speed(speed);
             let report = measure_on(&machine, &mesh, &settings);
-            let queries: Vec<&str> = report.cheapest.iter().map(|c| c.operation.name()).collect();
+            let queries: Vec<&str> = report
+                .cheapest
+                .iter()
+                .map(|c| c.operation.as_str())
+                .collect();
             let expected = [
                 "nearest_vertex",
                 "vertices_within",

@@ -1,13 +1,11 @@
 //! Effects of the element order and of the structure on times, as ratios with confidence intervals.
 
-use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 
-use crate::engine::ranking::quotient;
-use sixfold_workload::{Operation, Time};
-
-/// Assumed error factor of a ratio without an interval.
-const ASSUMED_ERROR: f64 = 1.5;
+use sixfold_results::Time;
+use sixfold_results::ranking::quotient;
+use sixfold_results::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
+use sixfold_workload::Operation;
 
 pub(super) struct OrderSamples {
     pub(super) backend: &'static str,
@@ -19,138 +17,39 @@ pub(super) struct OrderSamples {
     pub(super) ns: Option<f64>,
 }
 
-/// The time of one measurement divided by the time of another measurement, with a 95 % confidence
-/// interval.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Factor {
-    /// The quotient of the two times.
-    pub ratio: f64,
-    /// Lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three rounds.
-    pub ci_low: Option<f64>,
-    /// Upper end of the 95 % confidence interval of `ratio`.
-    pub ci_high: Option<f64>,
+/// Returns the quotient of two times; `None` if one is unknown.
+fn factor(slow: &OrderSamples, fast: &OrderSamples) -> Option<Factor> {
+    let ratio = quotient([&slow.samples, &fast.samples], [slow.ns?, fast.ns?])?;
+    Some(Factor {
+        ratio: ratio.value,
+        ci_low: ratio.interval.map(|[low, _]| low),
+        ci_high: ratio.interval.map(|[_, high]| high),
+    })
 }
 
-impl Factor {
-    fn new(slow: &OrderSamples, fast: &OrderSamples) -> Option<Self> {
-        let ratio = quotient([&slow.samples, &fast.samples], [slow.ns?, fast.ns?])?;
-        Some(Self {
-            ratio: ratio.value,
-            ci_low: ratio.interval.map(|[low, _]| low),
-            ci_high: ratio.interval.map(|[_, high]| high),
-        })
-    }
-
-    /// Returns whether the ratio is larger than the noise and its interval lies above 1.
-    fn beyond(&self, noise: f64) -> bool {
-        self.ratio > noise && self.low() > 1.0
-    }
-
-    fn low(&self) -> f64 {
-        self.ci_low.unwrap_or(self.ratio / ASSUMED_ERROR)
-    }
-
-    fn high(&self) -> f64 {
-        self.ci_high.unwrap_or(self.ratio * ASSUMED_ERROR)
-    }
-}
-
-/// The effect of the element order on the time of one operation on one structure.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct OrderEffect {
-    /// The name of the structure.
-    pub backend: String,
-    /// True if the operation scans all faces of the mesh for each element on this structure.
-    pub scans: bool,
-    /// The order with the smallest time.
-    pub best: Order,
-    /// The order with the largest time.
-    pub worst: Order,
-    /// Time in the order `worst` divided by the time in the order `best`.
-    pub worst_to_best: Factor,
-    /// Time in the original order of the mesh divided by the time in the order `best`. `None` if
-    /// the original order was not measured.
-    pub given_to_best: Option<Factor>,
-    /// True if `worst_to_best` is larger than the noise, and the confidence interval of
-    /// `worst_to_best` lies above 1.
-    pub matters: bool,
-}
-
-/// The effect of the structure on the time of one operation. For each structure, the time in the
-/// fastest order of this structure counts. Structures that scan all faces for each element are left
-/// out.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct StructureEffect {
-    /// The name of the structure with the smallest time.
-    pub fastest: String,
-    /// The order with the smallest time on the fastest structure.
-    pub fastest_order: Order,
-    /// The name of the structure with the largest time.
-    pub slowest: String,
-    /// The order with the smallest time on the slowest structure.
-    pub slowest_order: Order,
-    /// Time of the slowest structure divided by the time of the fastest structure.
-    pub slowest_to_fastest: Factor,
-    /// True if `slowest_to_fastest` is larger than the noise, and the confidence interval of
-    /// `slowest_to_fastest` lies above 1.
-    pub matters: bool,
-}
-
-/// Whether the element order or the structure has the larger effect on a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Larger {
-    /// The order of the elements has a larger effect than the choice of the structure, for every
-    /// structure that does not scan all faces.
-    Order,
-    /// The choice of the structure has a larger effect than the order of the elements, for every
-    /// structure that does not scan all faces.
-    Structure,
-    /// The order has the larger effect only for some structures, or the confidence intervals
-    /// overlap.
-    Depends,
-}
-
-/// The effects of the element order and of the structure on the time of one operation.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Comparison {
-    /// The measured operation, such as `vertex_normal`.
-    pub operation: Operation,
-    /// Ratios of times up to this value count as noise.
-    pub noise: f64,
-    /// Effect of the order on each structure that was measured in at least two orders.
-    pub orders: Vec<OrderEffect>,
-    /// Effect of the structure; `None` if fewer than two structures do the operation without
-    /// scanning all faces.
-    pub structures: Option<StructureEffect>,
-    /// The larger effect; `None` if an effect is unknown.
-    pub larger: Option<Larger>,
-}
-
-impl Comparison {
-    pub(super) fn new(operation: Operation, timed: &[OrderSamples], noise: f64) -> Self {
-        let same_backend = |a: &OrderSamples, b: &OrderSamples| a.backend == b.backend;
-        let by_backend = || timed.chunk_by(same_backend);
-        let orders: Vec<OrderEffect> = by_backend()
-            .filter_map(|orders| order_effect(orders, noise))
-            .collect();
-        let local = by_backend().filter(|orders| !orders[0].scans);
-        let best: Vec<&OrderSamples> = local
-            .filter_map(|orders| Some(extremes(orders)?.0))
-            .collect();
-        let structures = structure_effect(&best, noise);
-        let larger = structures.as_ref().and_then(|between| {
-            let local = orders.iter().filter(|effect| !effect.scans);
-            let factors: Vec<Factor> = local.map(|effect| effect.worst_to_best).collect();
-            larger(&factors, &between.slowest_to_fastest)
-        });
-        Self {
-            operation,
-            noise,
-            orders,
-            structures,
-            larger,
-        }
+/// Compares the orders and the structures in one operation.
+pub(super) fn comparison(operation: Operation, timed: &[OrderSamples], noise: f64) -> Comparison {
+    let same_backend = |a: &OrderSamples, b: &OrderSamples| a.backend == b.backend;
+    let by_backend = || timed.chunk_by(same_backend);
+    let orders: Vec<OrderEffect> = by_backend()
+        .filter_map(|orders| order_effect(orders, noise))
+        .collect();
+    let local = by_backend().filter(|orders| !orders[0].scans);
+    let best: Vec<&OrderSamples> = local
+        .filter_map(|orders| Some(extremes(orders)?.0))
+        .collect();
+    let structures = structure_effect(&best, noise);
+    let larger = structures.as_ref().and_then(|between| {
+        let local = orders.iter().filter(|effect| !effect.scans);
+        let factors: Vec<Factor> = local.map(|effect| effect.worst_to_best).collect();
+        larger(&factors, &between.slowest_to_fastest)
+    });
+    Comparison {
+        operation: operation.name().into(),
+        noise,
+        orders,
+        structures,
+        larger,
     }
 }
 
@@ -169,16 +68,16 @@ fn order_effect(orders: &[OrderSamples], noise: f64) -> Option<OrderEffect> {
     if orders.iter().filter(|t| !t.samples.is_empty()).count() < 2 {
         return None;
     }
-    let worst_to_best = Factor::new(worst, best)?;
+    let worst_to_best = factor(worst, best)?;
     let given = orders.iter().find(|t| t.order == Order::Given);
     Some(OrderEffect {
         backend: best.backend.into(),
         scans: best.scans,
-        best: best.order,
-        worst: worst.order,
+        best: best.order.to_string(),
+        worst: worst.order.to_string(),
         worst_to_best,
-        given_to_best: given.and_then(|given| Factor::new(given, best)),
-        matters: worst_to_best.beyond(noise),
+        given_to_best: given.and_then(|given| factor(given, best)),
+        matters: worst_to_best.is_beyond(noise),
     })
 }
 
@@ -187,14 +86,14 @@ fn structure_effect(best: &[&OrderSamples], noise: f64) -> Option<StructureEffec
     if best.len() < 2 {
         return None;
     }
-    let slowest_to_fastest = Factor::new(slowest, fastest)?;
+    let slowest_to_fastest = factor(slowest, fastest)?;
     Some(StructureEffect {
         fastest: fastest.backend.into(),
-        fastest_order: fastest.order,
+        fastest_order: fastest.order.to_string(),
         slowest: slowest.backend.into(),
-        slowest_order: slowest.order,
+        slowest_order: slowest.order.to_string(),
         slowest_to_fastest,
-        matters: slowest_to_fastest.beyond(noise),
+        matters: slowest_to_fastest.is_beyond(noise),
     })
 }
 
@@ -244,7 +143,7 @@ mod tests {
                 ]
             });
         let timed: Vec<OrderSamples> = timed.collect();
-        Comparison::new(Operation::Boundary, &timed, 1.02)
+        comparison(Operation::Boundary, &timed, 1.02)
     }
 
     #[test]
@@ -270,15 +169,15 @@ mod tests {
         let matters: Vec<bool> = all.orders.iter().map(|o| o.matters).collect();
         assert_eq!(matters, [false, true, true]);
         assert_eq!(
-            (all.orders[2].best, all.orders[2].worst),
-            (Order::Shuffled, Order::Given)
+            (&*all.orders[2].best, &*all.orders[2].worst),
+            (Order::Shuffled.name(), Order::Given.name())
         );
         let between = all.structures.expect("two that do not scan");
         assert_eq!(
             (between.fastest.as_str(), between.slowest.as_str()),
             ("a", "b")
         );
-        assert_eq!(between.slowest_order, Order::Shuffled);
+        assert_eq!(between.slowest_order, Order::Shuffled.name());
         assert!((between.slowest_to_fastest.ratio - 1.5).abs() < 1e-9);
         assert_eq!(all.larger, Some(Larger::Order));
     }

@@ -3,12 +3,11 @@
 use std::cmp::Reverse;
 
 use sixfold::shapes::Order;
-use sixfold_workload::Operation;
 
-use super::{Comparison, Larger};
-use crate::labs::study::sentences::noise;
-use crate::numbers::{counted, shown_ratio, times};
-use crate::results::rows::{Agreement, Control, ResultRow, Standing};
+use sixfold_results::numbers::{counted, shown_ratio, times};
+use sixfold_results::{
+    Agreement, Comparison, Control, Larger, ResultRow, Standing, describe_noise,
+};
 
 /// The results of one operation on one structure in all orders.
 type Pair<'r> = &'r [ResultRow];
@@ -54,12 +53,11 @@ struct Times<'r>(&'r [ResultRow]);
 
 impl Times<'_> {
     /// Returns the quotient of the shown times of two structures, each in an order.
-    fn ratio(&self, operation: Operation, [a, b]: [(&str, Order); 2]) -> Option<f64> {
-        let time = |(backend, order): (&str, Order)| {
+    fn ratio(&self, operation: &str, [a, b]: [(&str, &str); 2]) -> Option<f64> {
+        let time = |(backend, order): (&str, &str)| {
             let mut rows = self.0.iter();
-            let row = rows.find(|r| {
-                r.case == order.name() && r.operation == operation && r.backend == backend
-            });
+            let row =
+                rows.find(|r| r.case == order && r.operation == operation && r.backend == backend);
             row?.ns_per_element
         };
         Some(shown_ratio(time(a)?, time(b)?))
@@ -143,8 +141,8 @@ fn effects(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> {
         let local = local.filter(|effect| !effect.scans && effect.matters);
         local.filter_map(|effect| {
             let name = effect.backend.as_str();
-            let orders = [(name, effect.worst), (name, effect.best)];
-            let ratio = shown.ratio(comparison.operation, orders)?;
+            let orders = [(name, effect.worst.as_str()), (name, &effect.best)];
+            let ratio = shown.ratio(&comparison.operation, orders)?;
             Some((ratio, format!("{} on {name}", comparison.operation)))
         })
     });
@@ -153,10 +151,10 @@ fn effects(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> {
             .structures
             .as_ref()
             .filter(|effect| effect.matters)?;
-        let slowest = (effect.slowest.as_str(), effect.slowest_order);
-        let fastest = (effect.fastest.as_str(), effect.fastest_order);
-        let ratio = shown.ratio(comparison.operation, [slowest, fastest])?;
-        let operation = comparison.operation;
+        let slowest = (effect.slowest.as_str(), effect.slowest_order.as_str());
+        let fastest = (effect.fastest.as_str(), effect.fastest_order.as_str());
+        let ratio = shown.ratio(&comparison.operation, [slowest, fastest])?;
+        let operation = &comparison.operation;
         Some((
             ratio,
             format!("{operation}, {} to {}", slowest.0, fastest.0),
@@ -204,14 +202,14 @@ fn verdict(comparisons: &[Comparison]) -> Option<String> {
 fn scan_effect(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> {
     let scans = comparisons.iter().flat_map(|comparison| {
         let scans = comparison.orders.iter().filter(|effect| effect.scans);
-        scans.map(move |effect| (comparison.operation, effect))
+        scans.map(move |effect| (&comparison.operation, effect))
     });
     let (operation, most) = scans.max_by(|(_, a), (_, b)| {
         let (a, b) = (a.worst_to_best.ratio, b.worst_to_best.ratio);
         a.total_cmp(&b)
     })?;
     let name = most.backend.as_str();
-    let ratio = shown.ratio(operation, [(name, most.worst), (name, most.best)])?;
+    let ratio = shown.ratio(operation, [(name, &most.worst), (name, &most.best)])?;
     Some(match most.matters {
         true => format!(
             "On structures that scan all faces for each element, the worst order takes at most {} \
@@ -227,6 +225,6 @@ fn scan_effect(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> 
 fn how_sure(control: &Control) -> Option<String> {
     Some(format!(
         "How sure: {}, in the given order.",
-        noise(control)?
+        describe_noise(control)?
     ))
 }

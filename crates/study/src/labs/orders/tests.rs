@@ -5,7 +5,7 @@ use sixfold::{Facts, shapes};
 use super::*;
 use crate::engine::effort::Effort;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
-use crate::results::finding::Finding;
+use sixfold_results::Finding;
 
 /// Returns a mesh of irregular triangles. Different elements then give different sums.
 fn blobs() -> PolygonMesh {
@@ -80,7 +80,7 @@ fn every_order_does_the_same_work_on_every_structure() {
         // The result of `ff_bfs` depends on the first face, so structures are compared for each
         // order.
         let walked = |order: Order| {
-            let rows = report.rows(Operation::FfBfs);
+            let rows = report.rows(Operation::FfBfs.name());
             let sums = rows
                 .filter(|r| r.case == order.name())
                 .filter_map(|r| r.checksum);
@@ -129,7 +129,7 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
     let names = ["vertex_faces", "face_vertices"];
     let report = quick_on(&machine, blobs(), &settings(Effort::of_ms(2000), &names));
     let report = report.expect("all backends hold it");
-    assert_eq!(report.orders, Order::ALL);
+    assert_eq!(report.orders, Order::ALL.map(Order::name));
     for rows in report
         .results
         .chunk_by(|a, b| a.operation == b.operation && a.backend == b.backend)

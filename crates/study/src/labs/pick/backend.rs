@@ -8,7 +8,7 @@ use sixfold_workload::{
 };
 
 use crate::labs::pick::measurement::Contestant;
-use crate::labs::pick::report::Excluded;
+use sixfold_results::Excluded;
 
 /// A structure or relation tables, ready for the mix.
 pub(crate) struct PickBackend<'a> {
@@ -78,7 +78,7 @@ pub(crate) fn exclude_large(
     backends.retain(|backend| {
         let bytes = backend.mixer.bytes() as u64;
         if bytes > most {
-            let reason = super::report::over_memory_limit(bytes, most);
+            let reason = super::needs::over_memory_limit(bytes, most);
             excluded.push(Excluded::new(backend.mixer.name(), reason));
         }
         bytes <= most

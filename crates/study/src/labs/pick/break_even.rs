@@ -1,11 +1,12 @@
 //! The number of operations after which building a structure has paid off.
 
-use sixfold_workload::{Task, Time};
+use sixfold_results::Time;
+use sixfold_workload::Task;
 
 use crate::engine::measure::Entry;
-use crate::engine::statistics::Median;
 use crate::labs::pick::backend::Candidate;
-use crate::labs::pick::report::{BreakEven, Ranked};
+use sixfold_results::statistics::Median;
+use sixfold_results::{BreakEven, Ranked};
 
 /// A candidate with its measured tasks.
 pub(crate) struct MeasuredMix<'m> {

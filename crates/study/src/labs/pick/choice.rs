@@ -1,13 +1,7 @@
 //! The choice of one backend from a ranking.
 
-use serde::{Deserialize, Serialize};
-
-use crate::labs::pick::report::{PartCost, Ranked};
-use crate::numbers::{list, times};
-
-/// Two backends count as equally fast if the ratio of their times is at most this value. Another
-/// program, compiler or machine can change the ratio by 5 %.
-pub const EQUAL_UP_TO: f64 = 1.05;
+use sixfold_results::numbers::{list, times};
+use sixfold_results::{Choice, EQUAL_UP_TO, PartCost, Ranked, TurningPoint};
 
 /// Largest factor for which [`Choice::turning_point`] is looked for.
 const LARGEST_FACTOR: f64 = 100.0;
@@ -21,36 +15,6 @@ const ORDER: [&str; 6] = [
     "half-edge",
     "winged-edge",
 ];
-
-/// The backend that is recommended for the workload.
-///
-/// A backend of which only a lower bound of the time is known is never chosen. Backends are equally
-/// fast if the interval of the ratio of their times contains 1, or if the times differ by at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
-/// backend with the fewest bytes. If the bytes are equal, the choice is the first backend in this
-/// order: polygon-soup, indexed-face-set, face-vertex, corner-table, half-edge, winged-edge,
-/// others.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Choice {
-    /// The name of the chosen backend.
-    pub backend: String,
-    /// The names of the other backends that are as fast as the fastest backend.
-    pub equally_fast: Vec<String>,
-    /// The smallest change of one weight in the workload after which a slower backend would be as
-    /// fast as the chosen backend. `None` if the weight must change by a factor of more than 100.
-    pub turning_point: Option<TurningPoint>,
-}
-
-/// A change of one weight in the workload after which another backend would be as fast as the
-/// chosen backend. The change is computed from times of the single operations.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct TurningPoint {
-    /// The operation whose weight in the workload grows.
-    pub operation: String,
-    /// The factor by which the weight of the operation grows.
-    pub factor: f64,
-    /// The name of the backend that would be as fast as the chosen backend after the change.
-    pub backend: String,
-}
 
 /// Chooses a backend from a ranking, the fastest first; `None` if no backend was measured.
 pub(crate) fn choose(ranking: &[Ranked]) -> Option<Choice> {
@@ -93,7 +57,7 @@ fn turning_point(chosen: &Ranked, other: &Ranked) -> Option<TurningPoint> {
         let gain = own.weighted_ns() - theirs.weighted_ns();
         let factor = 1.0 + behind / gain;
         (gain > 0.0 && factor <= LARGEST_FACTOR).then(|| TurningPoint {
-            operation: own.operation.to_string(),
+            operation: own.operation.clone(),
             factor,
             backend: other.backend.clone(),
         })
@@ -101,52 +65,50 @@ fn turning_point(chosen: &Ranked, other: &Ranked) -> Option<TurningPoint> {
     points.min_by(|a, b| a.factor.total_cmp(&b.factor))
 }
 
-impl Choice {
-    /// Returns the rule that decided between equally fast backends, as a sentence; `None` if no
-    /// other backend is as fast.
-    pub(crate) fn rule(&self, ranking: &[Ranked]) -> Option<String> {
-        let bytes = |name: &str| {
-            let row = ranking.iter().find(|row| row.backend == name)?;
-            Some((row.bytes, row.bytes_per_vertex))
-        };
-        if self.equally_fast.is_empty() {
-            return None;
-        }
-        let (own, per_vertex) = bytes(&self.backend)?;
-        let same_size = self
-            .equally_fast
-            .iter()
-            .any(|name| bytes(name).is_some_and(|(b, _)| b == own));
-        let reason = match same_size {
-            true => "is the simplest of the backends with the fewest bytes",
-            false => "has the fewest bytes",
-        };
-        Some(format!(
-            "Choose {}: {} are equally fast (within 5 %, or with no clear difference), and {} \
-             {reason} ({per_vertex:.1} per vertex).",
-            self.backend,
-            list(std::iter::once(&self.backend).chain(&self.equally_fast)),
-            self.backend,
-        ))
+/// Returns the rule that decided between equally fast backends, as a sentence; `None` if no
+/// other backend is as fast.
+pub(crate) fn rule(choice: &Choice, ranking: &[Ranked]) -> Option<String> {
+    let bytes = |name: &str| {
+        let row = ranking.iter().find(|row| row.backend == name)?;
+        Some((row.bytes, row.bytes_per_vertex))
+    };
+    if choice.equally_fast.is_empty() {
+        return None;
     }
+    let (own, per_vertex) = bytes(&choice.backend)?;
+    let same_size = choice
+        .equally_fast
+        .iter()
+        .any(|name| bytes(name).is_some_and(|(b, _)| b == own));
+    let reason = match same_size {
+        true => "is the simplest of the backends with the fewest bytes",
+        false => "has the fewest bytes",
+    };
+    Some(format!(
+        "Choose {}: {} are equally fast (within 5 %, or with no clear difference), and {} \
+         {reason} ({per_vertex:.1} per vertex).",
+        choice.backend,
+        list(std::iter::once(&choice.backend).chain(&choice.equally_fast)),
+        choice.backend,
+    ))
+}
 
-    /// Returns what would change the choice, as a sentence.
-    pub(crate) fn what_would_change(&self) -> String {
-        match &self.turning_point {
-            Some(point) => format!(
-                "{} would be as fast as {} if the weight of {} in the mix were {} its present \
-                 weight.",
-                point.backend,
-                self.backend,
-                point.operation,
-                times(point.factor)
-            ),
-            None => format!(
-                "{} stays ahead of the slower backends even if any one operation of the mix has 100 \
-                 times its weight.",
-                self.backend
-            ),
-        }
+/// Returns what would change the choice, as a sentence.
+pub(crate) fn what_would_change(choice: &Choice) -> String {
+    match &choice.turning_point {
+        Some(point) => format!(
+            "{} would be as fast as {} if the weight of {} in the mix were {} its present \
+             weight.",
+            point.backend,
+            choice.backend,
+            point.operation,
+            times(point.factor)
+        ),
+        None => format!(
+            "{} stays ahead of the slower backends even if any one operation of the mix has 100 \
+             times its weight.",
+            choice.backend
+        ),
     }
 }
 
@@ -157,8 +119,8 @@ mod tests {
     use super::*;
 
     fn ranked(backend: &str, ratio: f64, tied: bool, bytes: usize, parts: [f64; 2]) -> Ranked {
-        let part = |operation, ns| PartCost {
-            operation: sixfold_workload::Action::Pass(operation),
+        let part = |operation: Operation, ns| PartCost {
+            operation: operation.name().into(),
             share: 0.5,
             ns: Some(ns),
             estimated: false,
@@ -201,8 +163,8 @@ mod tests {
         let choice = choose(&ranking).expect("not empty");
         assert_eq!(choice.backend, "corner-table");
         assert_eq!(choice.equally_fast, ["half-edge", "winged-edge"]);
-        let rule = choice.rule(&ranking).expect("two others");
-        assert!(rule.contains("simplest of the backends"), "{rule}");
+        let text = rule(&choice, &ranking).expect("two others");
+        assert!(text.contains("simplest of the backends"), "{text}");
         assert_eq!(choose(&[]), None);
         // Too few samples for an interval: only the ratio counts.
         let mut few = ranking.clone();
@@ -210,7 +172,7 @@ mod tests {
         let choice = choose(&few).expect("not empty");
         assert_eq!(choice.backend, "winged-edge");
         let alone = choose(&ranking[..1]).expect("one");
-        assert_eq!(alone.rule(&ranking[..1]), None);
+        assert_eq!(rule(&alone, &ranking[..1]), None);
     }
 
     #[test]
@@ -244,11 +206,10 @@ mod tests {
         // 10 k + 10 = 6 k + 22 at k = 3.
         assert!((point.factor - 3.0).abs() < 1e-9, "{point:?}");
         assert!(
-            choice
-                .what_would_change()
+            what_would_change(&choice)
                 .contains("if the weight of boundary in the mix were 3.00 × its present weight"),
             "{}",
-            choice.what_would_change()
+            what_would_change(&choice)
         );
         let never = [
             ranked("half-edge", 1.0, true, 96, [10.0, 10.0]),

@@ -4,24 +4,25 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 use sixfold_core::Counts;
-use sixfold_workload::{Operation, Task, Time, TimedBackend};
+use sixfold_results::Time;
+use sixfold_workload::{Operation, Task, TimedBackend};
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::corrected::corrected_times;
 use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
-use crate::engine::statistics::Median;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::inspect::StudyMesh;
 use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::{MeasuredMix, break_even};
-use crate::labs::pick::report::{BreakEven, Excluded, Ranked};
 use crate::labs::pick::tasks::TaskPlan;
 use crate::labs::study::is_skewed;
-use crate::results::rows::{Agreement, MeshReport, Samples, Standing};
+use sixfold_results::corrected_times;
+use sixfold_results::ranking::{NO_DIFFERENCE, rank, ratio};
+use sixfold_results::statistics::Median;
+use sixfold_results::{Agreement, MeshReport, Samples, Standing};
+use sixfold_results::{BreakEven, Excluded, Ranked};
 
 /// The properties of a backend, and the backend.
 pub(crate) type Contestant<'b> = (Candidate, Box<dyn TimedBackend + 'b>);

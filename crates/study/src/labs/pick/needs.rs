@@ -1,57 +1,41 @@
 //! The capabilities that a program can require of a structure.
 
+use sixfold_results::Need;
+use sixfold_results::numbers::grouped;
 use sixfold_workload::Backend;
 
-sixfold_core::named! {
-    /// A required capability of a structure.
-    pub enum Need: "need" {
-        /// The structure can be edited: its edges can be split, collapsed and flipped.
-        Edit = "edit",
-        /// The structure can hold edges with three or more faces, and vertices whose faces form
-        /// several fans (groups of faces that are connected by edges).
-        NonManifold = "non-manifold",
-        /// The structure can hold faces with any number of corners.
-        Polygons = "polygons",
-        /// The structure can hold adjacent faces with different orientations, which run along the
-        /// common edge in the same direction.
-        MixedOrientation = "mixed-orientation",
-        /// The structure can hold vertices without a face.
-        IsolatedVertices = "isolated-vertices",
-        /// The structure keeps vertices with equal coordinates separate.
-        CoincidentVertices = "coincident-vertices",
-        /// The structure can subdivide by splitting the elements in its own tables.
-        Refine = "refine",
-    }
+/// Returns why `backend` does not meet `need`; `None` if it meets the need.
+pub(crate) fn unmet_reason(need: Need, backend: &Backend) -> Option<String> {
+    let can = backend.info.capabilities;
+    let (has, lacks) = match need {
+        Need::Edit => (backend.info.is_editable(), "it cannot be edited"),
+        Need::NonManifold => (
+            can.non_manifold_edges && can.non_manifold_vertices,
+            "it holds manifolds only",
+        ),
+        Need::Polygons => (can.polygons, "it holds triangles only"),
+        Need::MixedOrientation => (
+            can.inconsistent_orientation,
+            "it holds consistently oriented faces only",
+        ),
+        Need::IsolatedVertices => (
+            can.isolated_vertices,
+            "it cannot hold a vertex without a face",
+        ),
+        Need::CoincidentVertices => (
+            can.coincident_vertices,
+            "it merges vertices that share coordinates",
+        ),
+        Need::Refine => (
+            !backend.info.splits.is_empty(),
+            "it cannot split its own tables",
+        ),
+    };
+    (!has).then(|| format!("{lacks} (--needs {need})"))
 }
 
-impl Need {
-    /// Returns why `backend` does not meet this need; `None` if it meets the need.
-    pub(crate) fn unmet_reason(self, backend: &Backend) -> Option<String> {
-        let can = backend.info.capabilities;
-        let (has, lacks) = match self {
-            Self::Edit => (backend.info.is_editable(), "it cannot be edited"),
-            Self::NonManifold => (
-                can.non_manifold_edges && can.non_manifold_vertices,
-                "it holds manifolds only",
-            ),
-            Self::Polygons => (can.polygons, "it holds triangles only"),
-            Self::MixedOrientation => (
-                can.inconsistent_orientation,
-                "it holds consistently oriented faces only",
-            ),
-            Self::IsolatedVertices => (
-                can.isolated_vertices,
-                "it cannot hold a vertex without a face",
-            ),
-            Self::CoincidentVertices => (
-                can.coincident_vertices,
-                "it merges vertices that share coordinates",
-            ),
-            Self::Refine => (
-                !backend.info.splits.is_empty(),
-                "it cannot split its own tables",
-            ),
-        };
-        (!has).then(|| format!("{lacks} (--needs {self})"))
-    }
+/// Returns why a backend of `bytes` bytes is excluded.
+pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
+    let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
+    format!("it takes {bytes} bytes, but --max-memory allows only {most}")
 }

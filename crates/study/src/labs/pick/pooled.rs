@@ -4,17 +4,17 @@ use std::collections::BTreeMap;
 
 use sixfold_workload::Workload;
 
-use crate::engine::ranking::NO_DIFFERENCE;
-use crate::engine::statistics::MIN_SAMPLES;
-use crate::engine::timer::Timer;
 use crate::labs::pick::choice::choose;
 use crate::labs::pick::measurement::Outcome;
-use crate::labs::pick::needs::Need;
 use crate::labs::pick::reasons;
-use crate::labs::pick::report::{
+use sixfold_results::Need;
+use sixfold_results::Run;
+use sixfold_results::Timer;
+use sixfold_results::ranking::NO_DIFFERENCE;
+use sixfold_results::statistics::MIN_SAMPLES;
+use sixfold_results::{
     BreakEven, Excluded, MeshRanking, PartCost, PickReport, ProgramReport, Ranked,
 };
-use crate::results::run::Run;
 
 /// What is asked of the backends.
 pub(crate) struct Question {
@@ -74,7 +74,7 @@ pub(crate) fn pooled(
     let mut report = PickReport {
         run,
         meshes: outcomes.iter().map(|o| o.mesh.clone()).collect(),
-        workload: question.workload,
+        workload: question.workload.report(),
         program: question.program,
         operations,
         needs: question.needs,
@@ -107,7 +107,7 @@ pub(crate) fn pooled(
     } else {
         report.samples = outcomes.into_iter().flat_map(|o| o.samples).collect();
     }
-    report.sentences = reasons::sentences(&report);
+    report.sentences = reasons::sentences(&report, &question.workload);
     report.warnings = reasons::warnings(&report);
     report
 }
@@ -191,7 +191,7 @@ fn parts_on_all(rows: &[&Ranked]) -> Vec<PartCost> {
             share: mean(on_each().map(|part| part.share)).unwrap_or(part.share),
             ns: times.map(|times| geometric(times.into_iter())),
             estimated: on_each().any(|part| part.estimated),
-            ..*part
+            operation: part.operation.clone(),
         }
     });
     parts.collect()

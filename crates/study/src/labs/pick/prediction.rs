@@ -7,9 +7,9 @@ use sixfold_core::Counts;
 use sixfold_workload::{Action, Backend, ElementKind, Schedule, Workload, patch};
 
 use crate::inspect::StudyMesh;
-use crate::labs::pick::report::Excluded;
 use crate::labs::pick::{PickError, PickSettings, qualified};
 use crate::labs::why::{WhySettings, why};
+use sixfold_results::Excluded;
 
 /// Maximum number of faces on which reads are counted. Counting takes less than a second up to this
 /// size. On a larger mesh, reads are counted on a patch of about this many faces.
@@ -194,7 +194,7 @@ fn elements(relation: Relation, counts: &Counts) -> f64 {
 #[cfg(test)]
 mod tests {
     use sixfold::shapes;
-    use sixfold_workload::pages::Policy;
+    use sixfold_results::Policy;
     use sixfold_workload::{Operation, built_in};
 
     use super::*;

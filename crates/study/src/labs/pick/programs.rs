@@ -5,17 +5,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use sixfold::{QueryCost, UnknownName};
-use sixfold_workload::pages::Policy;
+use sixfold_results::Policy;
+use sixfold_results::{OwnData, Time};
 use sixfold_workload::{
-    Access, Amount, Contestant, Job, MachineClock, Operation, OwnData, ProgramRefusal, Series,
-    Suite, SuiteProgram, Task, Time, TimedBackend, Workload, patch,
+    Access, Amount, Contestant, Job, MachineClock, Operation, ProgramRefusal, Series, Suite,
+    SuiteProgram, Task, TimedBackend, Workload, patch,
 };
 
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
-use crate::engine::timer::Timer;
+use crate::engine::run::{start_run, with_memory};
+use crate::engine::timer;
 use crate::external::MeshFile;
 use crate::external::isolated::{ChildTask, Isolated, Isolation};
 use crate::inspect::StudyMesh;
@@ -23,15 +24,14 @@ use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::MeasuredMix;
 use crate::labs::pick::measurement::{self, Outcome, PickMeasurement};
 use crate::labs::pick::pooled::{Question, pooled};
-use crate::labs::pick::report::{
-    AskedCount, Excluded, PartCost, PickReport, ProgramReport, RUN, over_memory_limit,
-};
 use crate::labs::pick::tasks::{TaskPlan, with_own_time};
-use crate::labs::pick::{MeasureContext, PickError};
+use crate::labs::pick::{MeasureContext, PickError, needs};
 use crate::labs::study::StudyError;
-use crate::numbers::{counted, duration};
 use crate::refusal;
-use crate::results::run::{Run, RunSettings};
+use sixfold_results::CacheState;
+use sixfold_results::RunSettings;
+use sixfold_results::numbers::{counted, duration};
+use sixfold_results::{AskedCount, Excluded, PartCost, PickReport, ProgramReport, RUN};
 
 /// Building is timed in every n-th round.
 const BUILDS_EVERY: u32 = 3;
@@ -132,8 +132,8 @@ pub(crate) fn pick_for_programs_on(
     settings.check_names(suite)?;
     let clock = machine.clock();
     let budget = Budget::start(settings.effort, clock);
-    let run = Run::start(settings.run_settings());
-    let timer = Timer::measure(clock);
+    let run = start_run(settings.run_settings());
+    let timer = timer::measure(clock);
     let programs = suite.programs();
     let steps = (programs.len() * study_meshes.len()).max(1);
     // Not a share of the time that is left: a slow program must not exclude structures of the next.
@@ -200,7 +200,7 @@ pub(crate) fn pick_for_programs_on(
             max_memory: settings.max_memory,
         };
         let interrupted = stop.load(Ordering::Relaxed);
-        let run = run.clone().with_memory(&memory);
+        let run = with_memory(run.clone(), &memory);
         let report = pooled(outcomes, question, timer, run, interrupted);
         finished(&report);
         reports.push(report);
@@ -238,7 +238,7 @@ impl ProgramSettings {
             backends: self.backends.clone(),
             seed: self.seed,
             heap: self.heap,
-            ..RunSettings::of_effort(self.effort)
+            ..self.effort.run_settings()
         }
     }
 }
@@ -252,7 +252,7 @@ fn record(
     let contestants = program.contestants().iter();
     let local = contestants.filter(|c| settings.chooses(c) && is_local(c));
     let mut asked = local.filter_map(|c| c.record(&study_mesh.polygons)?.ok());
-    Some(AskedCount::list(&asked.next()?))
+    Some(asked.next()?.counts())
 }
 
 pub(super) fn is_local(contestant: &Contestant) -> bool {
@@ -354,7 +354,9 @@ impl<'e> Conditions<'e> {
         };
         let bytes = backend.bytes();
         match self.settings.max_memory {
-            Some(most) if bytes as u64 > most => return Err(over_memory_limit(bytes as u64, most)),
+            Some(most) if bytes as u64 > most => {
+                return Err(needs::over_memory_limit(bytes as u64, most));
+            }
             _ => {}
         }
         let candidate = Candidate {

@@ -1,17 +1,18 @@
 //! The result of a pick and its reasons, as sentences.
 
-use crate::engine::statistics::MIN_SAMPLES;
 use crate::engine::warnings::machine_warnings;
-use crate::labs::pick::choice::{Choice, EQUAL_UP_TO};
-use crate::labs::pick::needs::Need;
-use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
-use crate::numbers::{counted, duration, figure, grouped, list, rounded};
+use crate::labs::pick::choice::{rule, what_would_change};
 use crate::packages;
-use crate::results::rows::Samples;
-use sixfold_workload::Action;
+use sixfold_results::EQUAL_UP_TO;
+use sixfold_results::Need;
+use sixfold_results::Samples;
+use sixfold_results::numbers::{counted, duration, figure, grouped, list, rounded};
+use sixfold_results::statistics::MIN_SAMPLES;
+use sixfold_results::{PartCost, PickReport, ProgramReport, Ranked};
+use sixfold_workload::{Action, Workload};
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
-pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
+pub(crate) fn sentences(report: &PickReport, workload: &Workload) -> Vec<String> {
     let best = match report.ranking.first() {
         None => return vec!["No backend qualifies.".into()],
         Some(best) if best.estimated => return vec![NOT_MEASURED.into()],
@@ -22,17 +23,17 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     let used = used.unwrap_or(best);
     let mut sentences = vec![fastest(report, best)];
     sentences.extend(not_ranked(report, best));
-    sentences.extend(chosen.and_then(|choice| choice.rule(&report.ranking)));
+    sentences.extend(chosen.and_then(|choice| rule(choice, &report.ranking)));
     sentences.extend(
         chosen
-            .map(Choice::what_would_change)
+            .map(what_would_change)
             .filter(|_| report.ranking.len() > 1 && report.program.is_none()),
     );
     sentences.extend(report.program.as_ref().and_then(asked));
     sentences.extend(dominant_part(report, best));
     sentences.extend(largest_loss(report, best));
     sentences.extend(tables(report, best));
-    sentences.extend(refined_form(report));
+    sentences.extend(refined_form(report, workload));
     sentences.extend(one_use_with_building(report, used));
     sentences.push(packages_to_add(used));
     sentences
@@ -43,8 +44,8 @@ const NOT_MEASURED: &str = "No backend was measured, because a run would exceed 
 
 /// Names the form of the structures that `subdivide` refines, if the other operations need the editable
 /// form.
-fn refined_form(report: &PickReport) -> Option<String> {
-    let actions = || report.workload.mix.iter().map(|part| part.action);
+fn refined_form(report: &PickReport, workload: &Workload) -> Option<String> {
+    let actions = || workload.mix.iter().map(|part| part.action);
     let edits = report.needs.contains(&Need::Edit) || actions().any(Action::needs_editable_mesh);
     let subdivides = actions().any(|action| action == Action::Subdivide);
     (edits && subdivides && report.program.is_none()).then(|| {

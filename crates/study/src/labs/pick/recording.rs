@@ -9,9 +9,9 @@ use sixfold_workload::{
 
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
-use crate::engine::statistics::Median;
 use crate::inspect::StudyMesh;
 use crate::labs::pick::programs::{ProgramSettings, is_local};
+use sixfold_results::statistics::Median;
 
 /// The greatest number of operations of the mix in one timed run.
 const MAX_TURNS: f64 = 4096.0;

@@ -4,13 +4,14 @@
 use sixfold::PolygonMesh;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold_core::Counts;
-use sixfold_workload::{Action, Operation, Schedule, Task, Time, Workload};
+use sixfold_results::Time;
+use sixfold_workload::{Action, Operation, Schedule, Task, Workload};
 
 use crate::engine::measure::Entry;
-use crate::engine::statistics::Median;
 use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::MeasuredMix;
-use crate::labs::pick::report::{MIX, PartCost};
+use sixfold_results::statistics::Median;
+use sixfold_results::{MIX, PartCost};
 
 /// Parts that a mix contains are also timed alone, to explain the result: in every n-th round.
 const PARTS_EVERY: u32 = 3;
@@ -167,7 +168,7 @@ impl TaskPlan for Tasks<'_> {
             let entry = measured.entry(self.task(measured.candidate, part));
             PartCost {
                 estimated: entry.is_some_and(|entry| entry.estimate.is_some()),
-                operation: schedule.parts[part].action,
+                operation: schedule.parts[part].action.to_string(),
                 share: schedule.shares[part],
                 ns: entry.and_then(|entry| {
                     let times = entry.times();

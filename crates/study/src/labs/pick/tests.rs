@@ -1,7 +1,7 @@
 //! Tests with mixers of known costs, on a simulated machine whose speed drifts.
 
 use sixfold::{PolygonMesh, QueryCost, shapes};
-use sixfold_workload::pages::Policy;
+use sixfold_results::{Policy, Ranked, Results, Status};
 use sixfold_workload::{
     Job, MixBackend, Operation, Outcome as TaskOutcome, Run, Series, Task, TimedBackend, built_in,
 };
@@ -313,7 +313,7 @@ fn the_report_explains_the_ranking() {
             .any(|sentence| sentence.contains("% of the time"))
     );
     let mut json = Vec::new();
-    let document = crate::Results::from(report);
+    let document = Results::from(report);
     document.write_json(&mut json).expect("into memory");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("it is JSON");
     let json = &json["findings"][0];
@@ -536,7 +536,7 @@ fn a_run_has_the_settings_of_its_pick() {
         backends: vec!["half-edge".into()],
         seed: 9,
         heap: Policy::System,
-        ..RunSettings::of_effort(Effort::of_rounds(3))
+        ..Effort::of_rounds(3).run_settings()
     };
     assert_eq!(settings.run_settings(), expected);
 }
@@ -596,7 +596,7 @@ fn a_lower_bound_below_a_measured_time_is_not_ranked_before_it() {
     let figures = report.figures();
     let mix = figures.iter().find(|f| f.row.backend == "winged-edge");
     let mix = mix.expect("a figure of the bound");
-    assert_eq!(mix.status, crate::Status::Estimated);
+    assert_eq!(mix.status, Status::Estimated);
     assert_eq!((mix.row.median_ns, mix.row.ratio_to_best), (None, None));
     assert_eq!(mix.row.estimated_ns, Some(bound.ns_per_operation));
     // A mean over several meshes with the bound is not ranked either.

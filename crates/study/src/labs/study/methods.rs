@@ -2,8 +2,8 @@
 
 use sixfold::subdivision::Method;
 
-use crate::numbers::{rounded_down, shown_ratio, times};
-use crate::results::rows::{BackendReport, ResultRow};
+use sixfold_results::numbers::{rounded_down, shown_ratio, times};
+use sixfold_results::{BackendReport, ResultRow};
 use sixfold_workload::Operation;
 
 /// Minimum ratio of two methods that is reported.
@@ -50,7 +50,7 @@ impl MeasuredTime {
 pub(crate) fn methods(backends: &[BackendReport], results: &[ResultRow]) -> Vec<String> {
     let time_of = |operation: Operation, backend: &BackendReport| {
         let mut rows = results.iter();
-        let row = rows.find(|row| row.operation == operation && row.backend == backend.name);
+        let row = rows.find(|row| row.operation == operation.name() && row.backend == backend.name);
         MeasuredTime::from_row(row?)
     };
     let mut sentences = Vec::new();

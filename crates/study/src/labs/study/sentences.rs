@@ -1,14 +1,12 @@
 //! The main results of a study, as sentences.
 
 use sixfold::Relation;
-use sixfold::subdivision::Scheme;
 
-use crate::labs::study::Report;
 use crate::labs::study::methods::methods;
-use crate::numbers::{counted, grouped, list};
-use crate::results::pool::{self, Overall, Purpose, leaders, not_ranked};
-use crate::results::rows::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
-use sixfold_workload::Operation;
+use sixfold_results::numbers::{grouped, list};
+use sixfold_results::{
+    Agreement, BackendReport, Overall, Purpose, Report, ResultRow, leaders, not_ranked,
+};
 
 /// Returns the answer in at most three sentences: which backend for what, by how much, and how sure.
 /// `scanning` tells whether a backend scans all faces for a relation.
@@ -25,7 +23,7 @@ pub(crate) fn answer(report: &Report, scanning: &dyn Fn(&str, Relation) -> bool)
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     let by_how_much = (!parts.is_empty()).then(|| parts.join("; ") + ".");
-    let sentences = [choice(report, &purposes), by_how_much, how_sure(report)];
+    let sentences = [choice(report, &purposes), by_how_much, report.how_sure()];
     sentences.into_iter().flatten().collect()
 }
 
@@ -34,9 +32,9 @@ fn scanning_backends<'r>(
     report: &'r Report,
     scanning: &dyn Fn(&str, Relation) -> bool,
 ) -> Vec<&'r str> {
-    let is_scan = |row: &ResultRow| match row.operation {
-        Operation::Relation(relation) => scanning(&row.backend, relation),
-        _ => false,
+    let is_scan = |row: &ResultRow| {
+        let relation = row.operation.parse::<Relation>();
+        relation.is_ok_and(|relation| scanning(&row.backend, relation))
     };
     let names = report.backends.iter().map(|backend| backend.name.as_str());
     let scans = |name: &&str| {
@@ -61,7 +59,7 @@ fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
             Some(open) => format!("{names} ({open})"),
             None => names,
         };
-        let purpose = match mean_over(report, rows) {
+        let purpose = match report.mean_over(rows) {
             over if over.is_empty() => rows[0].purpose.of_choice().to_owned(),
             over => format!("{} ({over})", rows[0].purpose.of_choice()),
         };
@@ -77,43 +75,14 @@ fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
     (!choices.is_empty()).then(|| format!("Fastest: {}.", choices.join("; ")))
 }
 
-/// Says over what a mean is, such as `geometric mean of 17 operations` or `fastest method of Loop`. Empty
-/// for one operation.
-pub(super) fn mean_over(report: &Report, rows: &[Overall]) -> String {
-    match (rows[0].purpose, rows[0].cases) {
-        (Purpose::Subdivide, _) => {
-            format!("fastest method of {}", list(schemes(report, rows)))
-        }
-        (_, 1) => String::new(),
-        (_, cases) => format!("geometric mean of {cases} operations"),
-    }
-}
-
-/// Returns the names of the schemes of which all backends of `rows` have a time.
-fn schemes(report: &Report, rows: &[Overall]) -> Vec<&'static str> {
-    let is_timed = |(_, scheme): &(&str, Scheme)| {
-        let has = |backend: &str| {
-            let mut results = report.results.iter();
-            results.any(|r| r.backend == backend && r.operation.scheme() == Some(*scheme))
-        };
-        rows.iter().all(|row| has(&row.backend))
-    };
-    let known = [
-        ("Catmull–Clark", Scheme::CatmullClark),
-        ("Loop", Scheme::Loop),
-    ];
-    let timed = known.into_iter().filter(is_timed);
-    timed.map(|(name, _)| name).collect()
-}
-
 /// Names the next best backend for each kind of work, with its time. [`scans`] names the backends
 /// that scan.
 fn next_best(purposes: &[&[Overall]], scanning: &[&str]) -> Option<String> {
     let next = purposes.iter().filter_map(|rows| {
         let first = rows.get(leaders(rows).len())?;
         let is_local = !scanning.contains(&first.backend.as_str());
-        let purpose = rows[0].purpose.name().to_lowercase();
-        let (next, ratio) = pool::next_best(rows)?;
+        let purpose = rows[0].purpose.title().to_lowercase();
+        let (next, ratio) = sixfold_results::next_best(rows)?;
         is_local.then(|| format!("{next} {ratio} the time in {purpose}"))
     });
     let next: Vec<String> = next.collect();
@@ -145,61 +114,6 @@ fn scans(report: &Report, purposes: &[&[Overall]], scanning: &[&str]) -> Option<
     ))
 }
 
-/// Describes the noise, and counts the operations with a clear answer.
-pub(super) fn how_sure(report: &Report) -> Option<String> {
-    let rows = report.results.chunk_by(|a, b| a.operation == b.operation);
-    let compared: Vec<&[ResultRow]> = rows
-        .filter(|rows| rows.iter().filter(|row| row.median_ns.is_some()).count() > 1)
-        .collect();
-    let count = |standing| {
-        let has = |rows: &&&[ResultRow]| rows.iter().any(|row| row.standing == Some(standing));
-        compared.iter().filter(has).count()
-    };
-    let (clear, tied) = (count(Standing::Best), count(Standing::Tied));
-    let few = compared.len() - clear - tied;
-    let counts = [
-        (clear, "a clear winner"),
-        (tied, "no clear difference between the fastest"),
-        (few, "too few samples"),
-    ];
-    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
-    let counts = counts.map(|(count, what)| format!("{count} with {what}"));
-    let counts = list(counts);
-    let noise = report.control.as_ref().and_then(noise);
-    match (compared.len(), noise) {
-        (0, None) => None,
-        (0, Some(noise)) => Some(format!("How sure: {noise}.")),
-        (all, noise) => {
-            let noise = noise.map_or(String::new(), |noise| format!("; {noise}"));
-            let operations = counted(all, "operation", "operations");
-            Some(format!("How sure: of {operations}, {counts}{noise}."))
-        }
-    }
-}
-
-/// Describes the difference between the two measurements of the control, without a full stop.
-pub(crate) fn noise(control: &Control) -> Option<String> {
-    let difference = |row: &&ControlRow| row.difference();
-    let worst = control
-        .operations
-        .iter()
-        .max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
-    let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
-    let at_most = match control.operations.len() {
-        1 => String::new(),
-        _ => format!(
-            " (median; at most {} in {})",
-            percent(control.worst),
-            worst.operation
-        ),
-    };
-    Some(format!(
-        "two measurements of {} differ by {}{at_most}",
-        control.backend,
-        percent(control.typical),
-    ))
-}
-
 /// Returns sentences about single results: the subdivision methods, and merged vertices.
 pub(crate) fn notes(backends: &[BackendReport], results: &[ResultRow]) -> Vec<String> {
     let mut notes = methods(backends, results);
@@ -211,7 +125,7 @@ pub(crate) fn notes(backends: &[BackendReport], results: &[ResultRow]) -> Vec<St
 /// Returns a warning for each result that differs from the results of the other backends.
 pub(crate) fn mismatches(report: &Report) -> Vec<String> {
     let mismatch = |row: &ResultRow, consequence: &str| {
-        let (operation, backend) = (row.operation, &row.backend);
+        let (operation, backend) = (&row.operation, &row.backend);
         format!(
             "{operation} on {backend} gives different results from the other backends. \
              {consequence}"
@@ -246,9 +160,9 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
 #[cfg(test)]
 pub(crate) fn row(
     backend: &str,
-    operation: Operation,
+    operation: sixfold_workload::Operation,
     ratio: f64,
-    standing: Standing,
+    standing: sixfold_results::Standing,
 ) -> ResultRow {
     ResultRow {
         median_ns: Some(100.0 * ratio),
@@ -258,7 +172,7 @@ pub(crate) fn row(
         standing: Some(standing),
         ratio_to_best: Some(ratio),
         samples: 9,
-        ..ResultRow::new(backend, operation)
+        ..ResultRow::new(backend, operation.name(), operation.unit())
     }
 }
 
@@ -266,7 +180,10 @@ pub(crate) fn row(
 mod tests {
     use sixfold::shapes;
     use sixfold::subdivision::Method::{Gather, Native, Scatter};
-    use sixfold_workload::Backend;
+    use sixfold_results::Run;
+    use sixfold_workload::{Backend, Operation};
+
+    use sixfold_results::{Control, ControlRow, Standing};
 
     use super::*;
     use crate::inspect::{StudyMesh, inspect};
@@ -279,6 +196,10 @@ mod tests {
             mesh: inspection.mesh,
             backends: inspection.backends,
             results,
+            run: Run {
+                operations: Operation::ALL.map(Operation::info).into(),
+                ..Run::default()
+            },
             ..Report::default()
         }
     }
@@ -319,7 +240,7 @@ mod tests {
         assert_eq!(said(&report), [which, how_much, &format!("{counts}.")]);
 
         let control = |ratio| ControlRow {
-            operation: Build,
+            operation: Build.name().into(),
             ratio,
             ci_low: None,
             ci_high: None,
@@ -329,7 +250,7 @@ mod tests {
             operations: vec![
                 control(1.01),
                 ControlRow {
-                    operation: query,
+                    operation: query.name().into(),
                     ..control(0.8)
                 },
             ],

@@ -1,9 +1,9 @@
 //! Sentences on the reads of queries, and on what limits their times.
 
+use sixfold_results::{Bound, WhyRow};
 use sixfold_workload::SCAN_SAMPLE;
 
-use super::{Bound, WhyRow};
-use crate::numbers::{counted, figure, grouped, list};
+use sixfold_results::numbers::{counted, figure, grouped, list};
 
 /// Describes the rows, which are sorted by relation: the backends with the fewest cache lines for
 /// each query, what limits the times, and how exact the figures are.
@@ -119,12 +119,12 @@ mod tests {
     use std::sync::atomic::AtomicBool;
 
     use sixfold::{Relation, shapes};
-    use sixfold_workload::BufferSpeed;
+    use sixfold_results::BufferSpeed;
 
     use super::*;
     use crate::inspect::StudyMesh;
     use crate::labs::why::{Timed, WhySettings, why};
-    use crate::results::rows::Agreement;
+    use sixfold_results::Agreement;
 
     fn timed(bound: Bound) -> Option<Timed> {
         Some(Timed {

@@ -239,7 +239,7 @@ fn programs_are_measured_on_this_machine_with_the_settings_that_were_asked_for()
         backends: settings.backends.clone(),
         seed: 9,
         heap: Policy::System,
-        ..RunSettings::of_effort(settings.effort)
+        ..settings.effort.run_settings()
     };
     assert_eq!(report.run.settings, expected);
     settings.backends.push("abacus".into());

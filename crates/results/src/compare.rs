@@ -1,0 +1,488 @@
+//! Comparison of two documents: what changed between machines, compilers or commits.
+//!
+//! Two measurements at different times have no rounds in common. Their times are therefore compared
+//! by the ratio of the medians. The confidence interval of the ratio is computed from the intervals
+//! of both medians. The speed of a machine may also drift between two measurements, and the samples
+//! do not show this drift. [`DRIFT`] is the default limit for the drift.
+
+mod matching;
+mod sentences;
+
+use std::collections::BTreeSet;
+use std::io;
+
+use serde::Serialize;
+
+use crate::document::{Results, SCHEMA};
+use crate::environment::Environment;
+use crate::finding::Finding;
+use crate::json::write_json;
+use crate::ranking::CLEAR_DIFFERENCE;
+use crate::rows::Standing;
+use crate::run::Run;
+use crate::statistics::{Median, quotient};
+use matching::{AllMeasured, CommonMeshes, Measured, measurements};
+
+/// Default limit for the drift between two measurements on an unchanged machine, as a ratio of
+/// times. The limit of 20 % is about twice the typical drift of a virtual machine
+/// (reports/repeatability).
+pub const DRIFT: f64 = 1.2;
+
+/// Options of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompareSettings {
+    /// If true, each ratio is divided by the median of all ratios. Use this option for two machines
+    /// of different speed.
+    pub relative: bool,
+    /// Ratios of times up to this value count as noise, even if the samples show a difference.
+    pub drift: f64,
+}
+
+impl Default for CompareSettings {
+    fn default() -> Self {
+        Self {
+            relative: false,
+            drift: DRIFT,
+        }
+    }
+}
+
+/// The differences between two documents.
+#[derive(Clone, Debug, Serialize)]
+pub struct Changes {
+    /// Version of the JSON schema.
+    pub schema: u32,
+    /// Differences of machines, programs and settings.
+    pub environment: Vec<SettingChange>,
+    /// The time in the second document divided by the time in the first, as the median over all
+    /// entries of `rows`. `None` if `rows` is empty.
+    pub overall: Option<f64>,
+    /// True if each ratio was divided by `overall` before the ratio was compared with the noise.
+    pub relative: bool,
+    /// Ratios of times up to this value always count as noise.
+    pub drift: f64,
+    /// The measured times that both documents have, in the order of the first document.
+    pub rows: Vec<Change>,
+    /// The counts of bytes that differ.
+    pub bytes: Vec<BytesChange>,
+    /// The operations of studies whose fastest backend changed.
+    pub winners: Vec<NewWinner>,
+    /// Measurements that only the first document has.
+    pub only_before: Vec<Measurement>,
+    /// Measurements that only the second document has.
+    pub only_after: Vec<Measurement>,
+    /// Sentences that describe the differences.
+    pub sentences: Vec<String>,
+}
+
+/// A difference between the machines, programs or settings of two documents.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct SettingChange {
+    /// Name of the setting.
+    pub what: &'static str,
+    /// The value in the first document.
+    pub before: String,
+    /// The value in the second document.
+    pub after: String,
+}
+
+/// What was measured: an operation on a backend.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Measurement {
+    /// The name of the mesh. If the two documents have different names for the mesh, this is the
+    /// name in the first document. Empty if the lab made its own mesh.
+    pub mesh: String,
+    /// The name of the command, such as `study`.
+    pub kind: &'static str,
+    /// The order, size or workload; empty in `study`, `why` and `memory`.
+    pub case: String,
+    /// The name of the operation, such as `vertex_normal`.
+    pub operation: String,
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+}
+
+/// The title of a part of measurements, and the function that returns this part.
+pub type MeasurementPart = (&'static str, fn(&Measurement) -> &str);
+
+impl Measurement {
+    /// Returns which of mesh, command and case differ between `measurements`. A part that is the same
+    /// for all is left out of tables and names.
+    pub fn differing_parts<'m>(
+        measurements: impl Iterator<Item = &'m Self> + Clone,
+    ) -> Vec<MeasurementPart> {
+        let parts: [MeasurementPart; 3] = [
+            ("mesh", |m| &m.mesh),
+            ("command", |m| m.kind),
+            ("case", |m| &m.case),
+        ];
+        let differs = |of: fn(&Self) -> &str| {
+            let mut values = measurements.clone().map(of);
+            let first = values.next();
+            values.any(|value| Some(value) != first)
+        };
+        let parts = parts.into_iter().filter(|(_, of)| differs(*of));
+        parts.collect()
+    }
+}
+
+/// The time of one operation on one backend in two documents.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// What was measured.
+    #[serde(flatten)]
+    pub measurement: Measurement,
+    /// Median time in the first document, in nanoseconds.
+    pub before_ns: f64,
+    /// Median time in the second document, in nanoseconds.
+    pub after_ns: f64,
+    /// Number of samples in the first document.
+    pub before_samples: usize,
+    /// Number of samples in the second document.
+    pub after_samples: usize,
+    /// The median time in the second document divided by the median time in the first.
+    pub ratio: f64,
+    /// Lower end of the 95 % confidence interval of `ratio`; `None` if a document has fewer than
+    /// three samples.
+    pub ci_low: Option<f64>,
+    /// Upper end of the 95 % confidence interval of `ratio`.
+    pub ci_high: Option<f64>,
+    /// The largest ratio that counts as noise, from `drift` and the controls of both documents.
+    pub noise: f64,
+    /// Whether the second time is shorter, longer, or equal within the noise.
+    pub verdict: Verdict,
+    /// True if the checksums differ. The two measurements then did different work.
+    pub other_checksum: bool,
+}
+
+/// A count of bytes that differs between two documents.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BytesChange {
+    /// The name of the mesh; empty if the lab made its own mesh.
+    pub mesh: String,
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The operation that allocates the bytes; `None` for the size of the backend.
+    pub operation: Option<String>,
+    /// The bytes in the first document.
+    pub before: usize,
+    /// The bytes in the second document.
+    pub after: usize,
+}
+
+/// The conclusion about the times of one operation on one backend in two documents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The second time is shorter by more than the noise.
+    Faster,
+    /// The second time is longer by more than the noise.
+    Slower,
+    /// The difference is within the noise.
+    Same,
+}
+
+/// An operation of a study whose fastest backend changed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct NewWinner {
+    /// The name of the mesh.
+    pub mesh: String,
+    /// The name of the operation, such as `vertex_normal`.
+    pub operation: String,
+    /// The name of the fastest backend in the first document.
+    pub before: String,
+    /// The name of the fastest backend in the second document.
+    pub after: String,
+}
+
+/// The reason why the times of two documents cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum CompareError {
+    /// The two documents have different heap policies or different cache states.
+    #[error(
+        "the first was measured with {option} {before}, the second with {option} {after}, so \
+         their times cannot be compared: measure both with the same {option}"
+    )]
+    OtherMemory {
+        option: &'static str,
+        before: &'static str,
+        after: &'static str,
+    },
+    /// The documents have no mesh in common.
+    #[error(
+        "the first is of {before}, the second of {after}: times of different meshes cannot be \
+         compared; measure one mesh twice"
+    )]
+    OtherMesh { before: String, after: String },
+    /// The documents have no measurement in common.
+    #[error(
+        "no operation was measured on the same backend in both, so there is nothing to compare: \
+         use the same command with the same --backends and --operations"
+    )]
+    NothingInCommon,
+}
+
+/// Compares two documents. Two measurements are compared if they are of the same command, mesh,
+/// case, operation and backend. Counts of bytes are also compared, estimated times are not.
+///
+/// Meshes are the same if their hashes are equal, or if their names and facts are equal. If each
+/// document has only one mesh, equal facts are enough, and the names may differ.
+///
+/// # Errors
+///
+/// Returns an error if the documents have no mesh or no measurement in common, or if the heap
+/// policies or the cache states differ.
+pub fn compare(
+    before: &Results,
+    after: &Results,
+    settings: CompareSettings,
+) -> Result<Changes, CompareError> {
+    let meshes = CommonMeshes::new(before, after);
+    meshes.check()?;
+    let [first, second] = [(before, false), (after, true)]
+        .map(|(results, is_second)| measurements(results, |mesh| meshes.name(mesh, is_second)));
+    let in_both = || {
+        let both = first.in_order.iter().map(|a| (a, second.get(&a.key)));
+        both.filter_map(|(a, b)| Some((a, b?)))
+    };
+    if in_both().next().is_none() {
+        return Err(CompareError::NothingInCommon);
+    }
+    in_both().try_for_each(|(a, b)| check_memory(a.finding, b.finding))?;
+
+    let CompareSettings { relative, drift } = settings;
+    let rows: Vec<Change> = in_both().filter_map(|(a, b)| change(a, b, drift)).collect();
+    let overall = Median::from_samples(rows.iter().map(|row| row.ratio)).map(|median| median.value);
+    let mut environment: Vec<SettingChange> = Vec::new();
+    for (a, b) in in_both() {
+        for change in differences(a.finding.run(), b.finding.run()) {
+            if !environment.contains(&change) {
+                environment.push(change);
+            }
+        }
+    }
+    let mut changes = Changes {
+        schema: SCHEMA,
+        environment,
+        overall,
+        relative,
+        drift,
+        rows,
+        bytes: bytes(in_both()),
+        winners: winners(&first, &second),
+        only_before: first.without(&second),
+        only_after: second.without(&first),
+        sentences: Vec::new(),
+    };
+    let divisor = changes.divisor();
+    for row in &mut changes.rows {
+        row.verdict = verdict(row, divisor);
+    }
+    changes.sentences = changes.describe();
+    Ok(changes)
+}
+
+/// Returns an error if the heap policies or the cache states differ.
+fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
+    let [a, b] = [before, after].map(|finding| finding.run().environment.memory_settings());
+    for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
+        let (before, after) = (a[i], b[i]);
+        if before != after {
+            return Err(CompareError::OtherMemory {
+                option,
+                before,
+                after,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Compares two figures, without the verdict. Returns `None` if there are no times, or if the ratio
+/// is not finite.
+fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Change> {
+    let [a, b] = [before, after].map(|measured| &measured.figure);
+    let (before_ns, after_ns) = (a.row.median_ns?, b.row.median_ns?);
+    let quotient = quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
+        let value = after_ns / before_ns;
+        value.is_finite().then_some((value, None))
+    });
+    let (ratio, interval) = quotient?;
+    let both = a.row.checksum.zip(b.row.checksum);
+    let comparable = a.row.sample_size == b.row.sample_size;
+    Some(Change {
+        measurement: before.key.clone(),
+        before_ns,
+        after_ns,
+        before_samples: a.row.samples,
+        after_samples: b.row.samples,
+        ratio,
+        ci_low: interval.map(|[low, _]| low),
+        ci_high: interval.map(|[_, high]| high),
+        noise: drift.max(a.noise).max(b.noise),
+        verdict: Verdict::Same,
+        other_checksum: comparable && both.is_some_and(|(a, b)| !nearly_equal(a, b)),
+    })
+}
+
+/// Returns whether two checksums may be of the same work. Sums of `f32` in different orders may
+/// have a relative difference of up to 10⁻⁴.
+fn nearly_equal(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
+}
+
+fn verdict(row: &Change, divisor: f64) -> Verdict {
+    let ratio = row.ratio / divisor;
+    let [low, high] = [row.ci_low, row.ci_high].map(|end| end.map(|end| end / divisor));
+    let (slower, faster) = match low.zip(high) {
+        Some((low, high)) => (low > 1.0, high < 1.0),
+        None => (ratio > CLEAR_DIFFERENCE, ratio < CLEAR_DIFFERENCE.recip()),
+    };
+    if slower && ratio > row.noise {
+        Verdict::Slower
+    } else if faster && ratio < row.noise.recip() {
+        Verdict::Faster
+    } else {
+        Verdict::Same
+    }
+}
+
+/// Returns the differences between machines, programs and settings.
+fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
+    fn shown<T: ToString>(value: Option<&T>) -> String {
+        value.map_or_else(|| "not known".into(), ToString::to_string)
+    }
+    let heap = |e: &Environment| {
+        let heap = e.heap.as_ref()?;
+        let pages = heap
+            .transparent_huge_pages
+            .as_deref()
+            .unwrap_or("not known");
+        Some(format!("{}, huge pages: {pages}", heap.allocator))
+    };
+    let facts = |run: &Run| -> [(&'static str, String); 16] {
+        let e = &run.environment;
+        [
+            ("processor", shown(e.cpu_model.as_ref())),
+            ("cores", shown(e.cores.as_ref())),
+            ("system", format!("{} {}", e.os, e.arch)),
+            ("kernel", shown(e.kernel.as_ref())),
+            ("governor", shown(e.governor.as_ref())),
+            ("boost", shown(e.boost.as_ref())),
+            ("compiler", e.rustc.clone()),
+            ("profile", format!("{} -O{}", e.profile, e.opt_level)),
+            ("flags", e.rustflags.clone()),
+            ("features", e.features.join(", ")),
+            ("sixfold", e.sixfold.clone()),
+            ("commit", shown(e.commit.as_ref())),
+            ("clock", e.clock.clone()),
+            ("allocator", shown(heap(e).as_ref())),
+            ("budget", run.settings.effort_text()),
+            ("seed", run.settings.seed.to_string()),
+        ]
+    };
+    let pairs = facts(before).into_iter().zip(facts(after));
+    let differs = pairs.filter(|((_, before), (_, after))| before != after);
+    let setting = |((what, before), (_, after))| SettingChange {
+        what,
+        before,
+        after,
+    };
+    differs.map(setting).collect()
+}
+
+/// Returns the counts of bytes that differ.
+fn bytes<'r>(
+    pairs: impl Iterator<Item = (&'r Measured<'r>, &'r Measured<'r>)>,
+) -> Vec<BytesChange> {
+    let mut changes: Vec<BytesChange> = Vec::new();
+    for (a, b) in pairs {
+        let size = (a.figure.backend_bytes, b.figure.backend_bytes, None);
+        let allocated = (
+            a.figure.counted.allocated_bytes,
+            b.figure.counted.allocated_bytes,
+            Some(a.key.operation.clone()),
+        );
+        for (before, after, operation) in [size, allocated] {
+            let change = before.zip(after).filter(|(before, after)| before != after);
+            changes.extend(change.map(|(before, after)| BytesChange {
+                mesh: a.key.mesh.clone(),
+                backend: a.key.backend.clone(),
+                operation,
+                before,
+                after,
+            }));
+        }
+    }
+    let mut known = BTreeSet::new();
+    changes.retain(|c| {
+        known.insert((
+            c.mesh.clone(),
+            c.backend.clone(),
+            c.operation.clone(),
+            c.before,
+        ))
+    });
+    changes
+}
+
+/// Returns the operations of studies that have a single fastest backend in each document, but a
+/// different one.
+fn winners(before: &AllMeasured<'_>, after: &AllMeasured<'_>) -> Vec<NewWinner> {
+    let best = |all: &AllMeasured<'_>| {
+        let best = all.in_order.iter().filter(|measured| {
+            matches!(measured.finding, Finding::Study(_))
+                && measured.figure.row.standing == Some(Standing::Best)
+        });
+        let best: Vec<Measurement> = best.map(|measured| measured.key.clone()).collect();
+        best
+    };
+    let after = best(after);
+    let new = best(before).into_iter().filter_map(|before| {
+        let same = |other: &&Measurement| {
+            (&other.mesh, &other.operation) == (&before.mesh, &before.operation)
+        };
+        let now = after.iter().find(same)?;
+        (now.backend != before.backend).then(|| NewWinner {
+            mesh: before.mesh,
+            operation: before.operation,
+            before: before.backend,
+            after: now.backend.clone(),
+        })
+    });
+    new.collect()
+}
+
+impl Changes {
+    /// Iterates over the entries of `rows` in which the second time is shorter or longer, or which
+    /// have different checksums.
+    pub fn changed(&self) -> impl Iterator<Item = &Change> {
+        let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
+        self.rows.iter().filter(changed)
+    }
+
+    /// Returns the number by which each ratio is divided before it is compared with the noise:
+    /// `overall` if the comparison is relative, 1 otherwise.
+    pub fn divisor(&self) -> f64 {
+        self.overall.filter(|_| self.relative).unwrap_or(1.0)
+    }
+
+    /// Counts the entries of `rows` with the given verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.rows
+            .iter()
+            .filter(|row| row.verdict == verdict)
+            .count()
+    }
+
+    /// Writes the changes as JSON.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of `writer`.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+}

@@ -1,0 +1,110 @@
+//! Merging of documents, for example of the shards of a study of many meshes.
+
+use std::collections::HashMap;
+
+use crate::document::Results;
+use crate::finding::Finding;
+use crate::findings::study::Report;
+
+/// The reason why two documents cannot be merged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum MergeError {
+    /// The studies have different settings, so their times cannot be pooled.
+    #[error(
+        "the settings differ: {what} is {theirs}, expected {ours}; measure again with the same \
+         settings"
+    )]
+    OtherSettings {
+        what: &'static str,
+        ours: String,
+        theirs: String,
+    },
+    /// Both documents have a study of the mesh, but the two meshes are different.
+    #[error(
+        "this file and an earlier one both have a study of {mesh}, but of different meshes: rename \
+         one of the two mesh files and measure it again"
+    )]
+    OtherMesh { mesh: String },
+    /// The documents have two different studies of the same mesh.
+    #[error(
+        "this file and an earlier one both have a study of {mesh}: compare them with \
+         `sixfold compare`, or leave one out"
+    )]
+    SecondStudy { mesh: String },
+}
+
+impl Results {
+    /// Adds the findings, failures and notices of `other`. A study replaces a failure of the same mesh.
+    /// A copy of a finding or notice of `self` is not added.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the studies of the two documents have different settings, if they are of
+    /// different meshes with the same name, or if there are two different studies of one mesh.
+    /// `self` is then unchanged.
+    pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
+        if let (Some(ours), Some(theirs)) = (self.studies().next(), other.studies().next()) {
+            ours.run.settings.check_equal(&theirs.run.settings)?;
+        }
+        self.check_memory(&other)?;
+        let known: HashMap<&str, &Report> = self
+            .studies()
+            .map(|study| (study.mesh.name.as_str(), study))
+            .collect();
+        for study in other.studies() {
+            let Some(known) = known.get(study.mesh.name.as_str()) else {
+                continue;
+            };
+            let mesh = study.mesh.name.clone();
+            if known.mesh.sha256 != study.mesh.sha256 {
+                return Err(MergeError::OtherMesh { mesh });
+            }
+            if known.run != study.run {
+                return Err(MergeError::SecondStudy { mesh });
+            }
+        }
+        let is_new = |finding: &Finding| match finding {
+            Finding::Study(study) => !known.contains_key(study.mesh.name.as_str()),
+            finding => !self.findings.iter().any(|known| is_copy(known, finding)),
+        };
+        let new: Vec<Finding> = other.findings.into_iter().filter(is_new).collect();
+        self.plan(other.planned);
+        self.extend(new);
+        self.add_failures(other.failures);
+        let is_new = |notice: &String| !self.notices.contains(notice);
+        let new: Vec<String> = other.notices.into_iter().filter(is_new).collect();
+        self.notices.extend(new);
+        Ok(())
+    }
+
+    /// Returns an error if the studies of `other` used another heap policy or cache state. With
+    /// little free memory, a study uses the policy `system` instead of the policy in the settings,
+    /// so comparing the settings is not enough.
+    fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
+        let memory = |study: &Report| study.run.environment.memory_settings();
+        let Some(ours) = self.studies().next().map(memory) else {
+            return Ok(());
+        };
+        match other.studies().map(memory).find(|theirs| *theirs != ours) {
+            None => Ok(()),
+            Some(theirs) => {
+                let i = usize::from(ours[0] == theirs[0]);
+                Err(MergeError::OtherSettings {
+                    what: ["--heap", "--caches"][i],
+                    ours: ours[i].into(),
+                    theirs: theirs[i].into(),
+                })
+            }
+        }
+    }
+}
+
+/// Returns whether two findings are copies of the same measurement.
+fn is_copy(a: &Finding, b: &Finding) -> bool {
+    a.kind() == b.kind()
+        && a.meshes() == b.meshes()
+        && a.run() == b.run()
+        && a.sentences() == b.sentences()
+}

@@ -1,0 +1,161 @@
+//! The fastest backends of each kind of work, and the sentences of a pool.
+
+use super::{Holding, Overall, Pool};
+use crate::findings::pick::EQUAL_UP_TO;
+use crate::findings::study::Report;
+use crate::numbers::{counted, list};
+
+impl Pool {
+    pub(super) fn describe(&self, studies: &[&Report]) -> Vec<String> {
+        let Some((all, parts)) = self.groups.split_first() else {
+            return Vec::new();
+        };
+        let mut sentences = vec![self.describe_meshes(all.meshes.len(), studies)];
+        for rows in all.overall.chunk_by(|a, b| a.purpose == b.purpose) {
+            sentences.extend(leader(rows, &all.name, self.compared.len()));
+            for part in parts {
+                let own = rows[0].purpose.rows(&part.overall);
+                // Only where the answer is another one.
+                let differs = own.first().zip(rows.first());
+                if differs.is_some_and(|(own, all)| own.backend != all.backend) {
+                    sentences.extend(leader(own, &part.name, self.compared.len()));
+                }
+            }
+        }
+        sentences
+    }
+
+    fn describe_meshes(&self, pooled: usize, studies: &[&Report]) -> String {
+        let studied = studies.len();
+        let holds_all = |holding: &&Holding| holding.meshes == studied;
+        let (all, fewer): (Vec<&Holding>, Vec<&Holding>) = self.holding.iter().partition(holds_all);
+        if fewer.is_empty() {
+            return format!(
+                "All backends can hold all {}.",
+                counted(studied, "mesh", "meshes")
+            );
+        }
+        let counts = fewer
+            .iter()
+            .map(|holding| format!("{} can hold {}", holding.backend, holding.meshes));
+        let counts: Vec<String> = counts.collect();
+        let others = match all.is_empty() {
+            true => "",
+            false => "; the other backends can hold all meshes",
+        };
+        let is_structure = |holding: &&Holding| {
+            let mut backends = studies
+                .iter()
+                .filter_map(|study| study.backend(&holding.backend));
+            backends.any(|backend| backend.external.is_none())
+        };
+        let repair = match fewer.iter().any(is_structure) {
+            true => " `sixfold repair --for NAME` makes a mesh that the structure NAME can hold.",
+            false => "",
+        };
+        format!(
+            "The means are over the {} that all compared backends can hold. Of {studied} studied, \
+             {}{others}.{repair}",
+            counted(pooled, "mesh", "meshes"),
+            counts.join(", ")
+        )
+    }
+}
+
+/// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 %
+/// slower, or by less than the error of the means of one mesh. A lower bound is never one of them.
+/// Empty if `rows` has only lower bounds.
+pub fn leaders(rows: &[Overall]) -> &[Overall] {
+    let equal = |row: &&Overall| {
+        let error = row.log_error.hypot(rows[0].log_error);
+        let most = rows[0].ratio_to_best * error.exp().max(EQUAL_UP_TO);
+        !row.bound && row.ratio_to_best <= most
+    };
+    &rows[..rows.iter().take_while(equal).count()]
+}
+
+/// Returns the next backends after the [`leaders`], with their time relative to the first: the
+/// fastest measured one, or else those that have only lower bounds. `None` if there are no others.
+pub fn next_best(rows: &[Overall]) -> Option<(String, String)> {
+    let others = &rows[leaders(rows).len()..];
+    let next = others.first()?;
+    // Lower bounds do not show which of the backends is the next.
+    let name = match next.bound && others.len() > 1 {
+        true => "the others".to_owned(),
+        false => next.backend.clone(),
+    };
+    let verb = if name == "the others" {
+        "take"
+    } else {
+        "takes"
+    };
+    Some((format!("{name} {verb}"), next.times(&rows[0])))
+}
+
+/// Names the backends whose lower bound does not show that they are slower than the [`leaders`], as
+/// an addition to a sentence.
+pub fn not_ranked(rows: &[Overall]) -> Option<String> {
+    let last = leaders(rows).last()?;
+    let open = rows
+        .iter()
+        .filter(|row| row.bound && row.ratio_to_best <= last.ratio_to_best);
+    let open: Vec<String> = open
+        .map(|row| format!("{} ({})", row.backend, row.times(&rows[0])))
+        .collect();
+    (!open.is_empty()).then(|| {
+        format!(
+            "not ranked, because a run would exceed the budget: {}",
+            list(open)
+        )
+    })
+}
+
+/// Describes the fastest backends of one purpose. `compared` is the number of all compared backends.
+fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
+    let best = leaders(rows);
+    let first = best.first()?;
+    let (next, ratio) = next_best(rows)?;
+    let lead = match best.len() {
+        1 => "is fastest on average",
+        _ => "are fastest on average, within 5 % of each other",
+    };
+    let name = |row: &Overall| row.backend.clone();
+    let only = match rows.len() < compared {
+        true => format!(" Only {} have times.", list(rows.iter().map(name))),
+        false => String::new(),
+    };
+    let open = not_ranked(rows).map_or(String::new(), |open| format!("; {open}"));
+    Some(format!(
+        "{}, {group}: {} {lead} (geometric mean over {}); {next} {ratio} the time{open}.{only}",
+        first.purpose.title(),
+        list(best.iter().map(name)),
+        counted(first.meshes, "mesh", "meshes"),
+    ))
+}
+
+/// Returns the warnings of the studies. Warnings that differ only in numbers are merged.
+pub(super) fn warnings(studies: &[&Report]) -> Vec<String> {
+    let mut merged: Vec<(String, &str, Vec<&str>)> = Vec::new();
+    for study in studies {
+        for warning in &study.warnings {
+            let pattern: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+            let mesh = study.mesh.name.as_str();
+            match merged.iter_mut().find(|(known, ..)| *known == pattern) {
+                Some((.., meshes)) => meshes.push(mesh),
+                None => merged.push((pattern, warning, vec![mesh])),
+            }
+        }
+    }
+    let text = |(_, warning, meshes): (String, &str, Vec<&str>)| match &meshes[..] {
+        [mesh] => format!("{mesh}: {warning}"),
+        [first, others @ ..] => format!(
+            "{first}: {warning} {} similar warnings.",
+            match others.len() {
+                1 => "Another mesh has".to_owned(),
+                n => format!("{n} other meshes have"),
+            }
+        ),
+        [] => warning.to_owned(),
+    };
+    merged.into_iter().map(text).collect()
+}

@@ -1,0 +1,198 @@
+//! Ratios of the times of two backends: each backend can be the baseline of the others.
+
+use crate::findings::study::Report;
+use crate::numbers::shown_ratio;
+use crate::pool::{decade, mean_over_sizes};
+use crate::ranking::ratio;
+use crate::rows::{Agreement, ResultRow, Samples};
+use crate::statistics::undisturbed;
+use crate::time::Time;
+
+/// The time of one backend divided by the time of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quotient {
+    /// The quotient of the times; over several meshes, the geometric mean.
+    pub ratio: f64,
+    /// The 95 % interval of `ratio`: on one mesh, of the ratios within rounds; else of the mean over the
+    /// meshes. `None` with fewer than three samples or meshes.
+    pub interval: Option<[f64; 2]>,
+    /// The number of meshes.
+    pub meshes: usize,
+}
+
+impl Report {
+    /// Returns the time of `backend` divided by the time of `other`, as the quotient of the shown times per
+    /// element. `None` if one of the times was not measured, or if one of the backends did other work.
+    pub fn quotient(&self, operation: &str, backend: &str, other: &str) -> Option<Quotient> {
+        let time = |name| {
+            let row = measured(self, operation, name)?;
+            row.ns_per_element
+        };
+        let value = shown_ratio(time(backend)?, time(other)?);
+        let samples = |name| {
+            let mut samples = self.samples.iter();
+            samples.find(|s| !s.control && s.backend == name && s.operation == operation)
+        };
+        let within_rounds = samples(backend).zip(samples(other));
+        let within_rounds =
+            within_rounds.and_then(|(own, other)| ratio(&counted(own), &counted(other)));
+        Some(Quotient {
+            ratio: value,
+            interval: within_rounds.and_then(|median| median.moved_to(value).interval),
+            meshes: 1,
+        })
+    }
+}
+
+/// Returns, for each backend and each other backend, the geometric mean of the quotient of their times over
+/// the meshes on which both were measured; `None` if there is no such mesh. Each power of ten of the number of
+/// faces has the same weight.
+pub fn mean_quotients(
+    studies: &[&Report],
+    operation: &str,
+    backends: &[String],
+) -> Vec<Vec<Option<Quotient>>> {
+    let times = |backend: &String| -> Vec<Option<f64>> {
+        let time = |study: &&Report| measured(study, operation, backend)?.median_ns;
+        studies.iter().map(time).collect()
+    };
+    let times: Vec<Vec<Option<f64>>> = backends.iter().map(times).collect();
+    let quotient = |own: &Vec<Option<f64>>, other: &Vec<Option<f64>>| {
+        let both = studies.iter().zip(own.iter().zip(other));
+        let quotients =
+            both.filter_map(|(study, (own, other))| Some((decade(study), (*own)? / (*other)?)));
+        let quotients: Vec<(u32, f64)> = quotients.filter(|(_, ratio)| ratio.is_finite()).collect();
+        let (ratio, interval) = mean_over_sizes(&quotients)?;
+        Some(Quotient {
+            ratio,
+            interval,
+            meshes: quotients.len(),
+        })
+    };
+    let row = |own| times.iter().map(|other| quotient(own, other)).collect();
+    times.iter().map(row).collect()
+}
+
+/// Returns the row of a measured time that can be compared with others.
+fn measured<'r>(report: &'r Report, operation: &str, backend: &str) -> Option<&'r ResultRow> {
+    let row = report.row(operation, backend)?;
+    let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
+    (row.median_ns.is_some() && same_work).then_some(row)
+}
+
+/// Returns the samples that count, with their rounds.
+fn counted(samples: &Samples) -> Vec<(u32, Time)> {
+    let times = samples.cpu_ns.as_ref().unwrap_or(&samples.wall_ns);
+    let time = |(&round, &ns): (&u32, &f64)| {
+        let time = Time {
+            cpu_ns: Some(ns),
+            wall_ns: ns,
+            faults: None,
+        };
+        (round, time)
+    };
+    let all: Vec<(u32, Time)> = samples.rounds.iter().zip(times).map(time).collect();
+    undisturbed(&all, &samples.slowdowns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::Standing;
+
+    const BOUNDARY: &str = "boundary";
+
+    fn row(backend: &str, ratio: f64, standing: Standing) -> ResultRow {
+        ResultRow {
+            median_ns: Some(100.0 * ratio),
+            elements: Some(1),
+            ns_per_element: Some(100.0 * ratio),
+            agreement: Agreement::Same,
+            standing: Some(standing),
+            ratio_to_best: Some(ratio),
+            samples: 9,
+            ..ResultRow::new(backend, BOUNDARY, "edge")
+        }
+    }
+
+    fn samples(backend: &str, times: &[f64]) -> Samples {
+        Samples {
+            backend: backend.into(),
+            operation: BOUNDARY.into(),
+            rounds: (0..).take(times.len()).collect(),
+            cpu_ns: Some(times.to_vec()),
+            wall_ns: times.to_vec(),
+            ..Samples::default()
+        }
+    }
+
+    fn report(slow: f64) -> Report {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let times = |factor: f64| drift.map(|t| 100.0 * factor * t);
+        Report {
+            results: vec![
+                row("half-edge", 1.0, Standing::Best),
+                row("corner-table", slow, Standing::Slower),
+            ],
+            samples: vec![
+                samples("half-edge", &times(1.0)),
+                samples("corner-table", &times(slow)),
+            ],
+            ..Report::default()
+        }
+    }
+
+    /// The drift of the machine is in both times of a round, so the interval is narrow.
+    #[test]
+    fn every_backend_can_be_the_baseline() {
+        let report = report(1.5);
+        let there = report
+            .quotient(BOUNDARY, "corner-table", "half-edge")
+            .expect("both measured");
+        let back = report
+            .quotient(BOUNDARY, "half-edge", "corner-table")
+            .expect("both measured");
+        assert!((there.ratio - 1.5).abs() < 1e-9, "{there:?}");
+        assert!((back.ratio * there.ratio - 1.0).abs() < 1e-9, "{back:?}");
+        for Quotient {
+            ratio, interval, ..
+        } in [there, back]
+        {
+            let [low, high] = interval.expect("seven rounds");
+            assert!(
+                low < ratio && ratio < high && high / low < 1.1,
+                "{low} to {high}"
+            );
+        }
+        assert_eq!(report.quotient(BOUNDARY, "half-edge", "gone"), None);
+    }
+
+    #[test]
+    fn other_work_has_no_quotient_and_few_samples_no_interval() {
+        let mut few = report(1.5);
+        for samples in &mut few.samples {
+            samples.rounds.truncate(2);
+        }
+        let quotient = few.quotient(BOUNDARY, "corner-table", "half-edge");
+        assert_eq!(quotient.expect("both measured").interval, None);
+        few.results[1].agreement = Agreement::Mismatch;
+        assert_eq!(few.quotient(BOUNDARY, "corner-table", "half-edge"), None);
+    }
+
+    #[test]
+    fn a_mean_is_over_the_meshes_that_have_both_times() {
+        let mut reports = [2.0, 8.0, 4.0].map(report);
+        let mean = |reports: &[Report; 3]| {
+            let studies: Vec<&Report> = reports.iter().collect();
+            let names = ["corner-table", "half-edge"].map(str::to_owned);
+            mean_quotients(&studies, BOUNDARY, &names)[0][1]
+        };
+        let all = mean(&reports).expect("measured");
+        assert!((all.ratio - 4.0).abs() < 1e-9 && all.meshes == 3, "{all:?}");
+        assert!(all.interval.is_some());
+        reports[1].results[1].median_ns = None;
+        let two = mean(&reports).expect("measured");
+        assert!((two.ratio - 8_f64.sqrt()).abs() < 1e-9, "{two:?}");
+        assert_eq!((two.meshes, two.interval), (2, None));
+    }
+}

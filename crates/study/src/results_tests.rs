@@ -1,0 +1,5 @@
+//! Tests of `sixfold-results` with the results of simulated measurements.
+
+mod compare;
+mod document;
+mod pool;
