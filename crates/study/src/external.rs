@@ -31,9 +31,7 @@ use sixfold_core::Counts;
 use tempfile::TempDir;
 
 use program::{Handshake, Program};
-use sixfold_results::sanitize;
-use sixfold_results::{BackendReport, ExternalReport};
-use sixfold_results::{HeapReport, Policy};
+use sixfold_results::{BackendReport, ExternalReport, HeapReport, Policy, sanitize};
 use sixfold_workload::TimedBackend;
 use subject::ExternalSubject;
 

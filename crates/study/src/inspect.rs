@@ -9,9 +9,7 @@ use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 use crate::refusal::Candidate;
-use sixfold_results::SCHEMA;
-use sixfold_results::write_json;
-use sixfold_results::{BackendReport, MeshReport};
+use sixfold_results::{BackendReport, MeshReport, SCHEMA, write_json};
 use sixfold_workload::Backend;
 
 /// Number of bytes that are hashed at once.

@@ -7,8 +7,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use crate::caches::{caches, level_bytes};
 use crate::clock::{Clock, timed};
 use crate::pages;
-use sixfold_results::Time;
-use sixfold_results::last_level_bytes;
+use sixfold_results::{Time, last_level_bytes};
 
 /// The minimum time between two readings of the clock, in nanoseconds. Shorter runs are timed
 /// together, as long as all copies of the mesh that these runs change fit into the cache.

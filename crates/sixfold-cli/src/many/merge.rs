@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use sixfold_results::Results;
+use sixfold_results::{Policy, Results};
 
 use super::folder::Folder;
 use crate::arguments::Merge;
@@ -13,7 +13,6 @@ use crate::load;
 use crate::measure::{Session, command_line, exit_code};
 use crate::output::check_not_overwritten;
 use crate::paper;
-use sixfold_results::Policy;
 
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     let options = arguments.files.options();

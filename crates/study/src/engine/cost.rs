@@ -6,12 +6,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use sixfold::{Facts, QueryCost, shapes};
-use sixfold_results::Policy;
+use sixfold_results::{CacheState, Policy};
 use sixfold_workload::{Backend, Clock, Job, MachineClock, Operation, Run, Series, TimedBackend};
 
 use crate::engine::heap::Memory;
 use crate::engine::trial::{Columns, Trial};
-use sixfold_results::CacheState;
 
 /// The times of all backends of a trial, in nanoseconds of processor time of this thread. Elapsed
 /// time would include the time of other programs.

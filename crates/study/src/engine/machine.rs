@@ -6,8 +6,7 @@ use std::time::Duration;
 use crate::engine::disturbance::{ReferenceWork, reference_work};
 use crate::engine::heap::Memory;
 use sixfold_core::Counts;
-use sixfold_results::CacheState;
-use sixfold_results::Policy;
+use sixfold_results::{CacheState, Policy};
 use sixfold_workload::pages::HeapPolicyConflict;
 use sixfold_workload::{Clock, MachineClock, MemorySpeed, TimedBackend};
 

@@ -22,10 +22,9 @@ use rand::seq::SliceRandom;
 use crate::engine::disturbance::{DisturbanceDetector, Verdict};
 use crate::engine::effort::Effort;
 use crate::engine::trial::Trial;
-use sixfold_results::Time;
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::statistics::{Median, undisturbed};
-use sixfold_results::{RefusalKind, Samples};
+use sixfold_results::{RefusalKind, Samples, Time};
 use sixfold_workload::Operation;
 use sixfold_workload::{
     Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,

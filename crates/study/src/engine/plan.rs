@@ -1,8 +1,7 @@
 //! Runs every operation once, and plans samples that fit the budget.
 
 use crate::engine::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
-use sixfold_results::RefusalKind;
-use sixfold_results::Time;
+use sixfold_results::{RefusalKind, Time};
 use sixfold_workload::{ElementKind, Operation};
 use sixfold_workload::{ElementSample, Job, Run, Task, exceeds_second_level};
 

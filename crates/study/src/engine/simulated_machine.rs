@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use sixfold::QueryCost;
 use sixfold_core::Counts;
-use sixfold_results::Time;
+use sixfold_results::{CacheState, Policy, Time};
 use sixfold_workload::{
     Backend, Clock, Job, MemorySpeed, Operation, Run, Series, Start, Task, TimedBackend,
 };
@@ -14,8 +14,6 @@ use sixfold_workload::{
 use crate::engine::disturbance::ReferenceWork;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
-use sixfold_results::CacheState;
-use sixfold_results::Policy;
 use sixfold_workload::pages::HeapPolicyConflict;
 
 /// One run of a task on a whole mesh.

@@ -1,12 +1,8 @@
 //! Warnings about possible faults of the measurement, each with a remedy.
 
-use sixfold_results::Environment;
-use sixfold_results::Policy;
-use sixfold_results::Timer;
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::statistics::{DISTURBED, median};
-use sixfold_results::{Control, ResultRow, Samples};
-use sixfold_results::{Run, RunSettings};
+use sixfold_results::{Control, Environment, Policy, ResultRow, Run, RunSettings, Samples, Timer};
 
 /// Maximum share of disturbed samples on a quiet machine.
 const FEW_DISTURBED: f64 = 0.1;

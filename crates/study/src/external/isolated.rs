@@ -13,8 +13,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sixfold::{Facts, PolygonMesh, QueryCost};
-use sixfold_results::Time;
-use sixfold_results::{AskedCount, Policy};
+use sixfold_results::{AskedCount, Policy, Time, sanitize};
 use sixfold_workload::pages::HeapGuard;
 use sixfold_workload::{
     Contestant, Job, MachineClock, Operation, Outcome, Run, Series, Suite, Task, TimedBackend,
@@ -25,7 +24,6 @@ use super::program::{PROTOCOL, Program};
 use super::subject::ExternalSubject;
 use crate::labs::pick::Qualification;
 use crate::refusal;
-use sixfold_results::sanitize;
 
 /// How programs run in child processes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -11,9 +11,7 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use sixfold_results::{AskedCount, Policy};
-
-use sixfold_results::sanitize;
+use sixfold_results::{AskedCount, Policy, sanitize};
 
 /// Version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;

@@ -1,11 +1,10 @@
 //! An external program as a backend of the measurement.
 
 use sixfold::QueryCost;
-use sixfold_results::Time;
+use sixfold_results::{Time, sanitize};
 use sixfold_workload::{Clock, Job, Outcome, Run, Series, TimedBackend};
 
 use super::program::{Program, Request, Response};
-use sixfold_results::sanitize;
 
 /// Maximum ratio of the time that a program reports to the time that Sixfold waited.
 const CLOCK_TOLERANCE: f64 = 1.01;

@@ -41,10 +41,9 @@ use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
 use settings::Plan;
 use sixfold_results::{
-    BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthReport, MeshReport, ResultRow, Samples,
-    SizeReport,
+    BackendBytes, BackendRefusal, Cache, CacheLimit, Fit, GrowthReport, MeshReport, ResultRow,
+    Samples, SizeReport, last_level_bytes,
 };
-use sixfold_results::{Cache, last_level_bytes};
 use sixfold_workload::caches;
 use sixfold_workload::{Backend, Draw, MachineClock, TimedBackend};
 

@@ -17,8 +17,7 @@ use crate::engine::run::start_run;
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::Candidate;
-use sixfold_results::RunSettings;
-use sixfold_results::{Audit, BackendAudit, BackendReport, OperationBytes};
+use sixfold_results::{Audit, BackendAudit, BackendReport, OperationBytes, RunSettings};
 
 /// Bytes of a word: an index or a coordinate.
 const WORD: f64 = 4.0;

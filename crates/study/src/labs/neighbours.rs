@@ -12,11 +12,12 @@ use std::time::Duration;
 
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
-use sixfold_results::{CheapestIndices, IndexReport, NeighboursReport, Policy};
+use sixfold_results::{
+    Agreement, CacheState, CheapestIndices, IndexReport, NeighboursReport, Policy, QueryPoints,
+    ResultRow, RunSettings, SpatialTask,
+};
 use sixfold_workload::spatial::{IndexKind, Input, KINDS, LIST};
 use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
-
-use sixfold_results::{QueryPoints, SpatialTask};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::effort::{Budget, Effort};
@@ -31,10 +32,7 @@ use crate::inspect::StudyMesh;
 use crate::labs::rows::Group;
 use crate::labs::study::StudyError;
 use cheapest::{Cost, cheapest};
-use sixfold_results::CacheState;
-use sixfold_results::RunSettings;
 use sixfold_results::ranking::{NO_DIFFERENCE, ratio};
-use sixfold_results::{Agreement, ResultRow};
 
 /// Maximum number of elements that the list visits in one run.
 const LIST_VISITS: usize = 4_000_000;

@@ -24,7 +24,7 @@ mod tests;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_core::Counts;
-use sixfold_results::{Excluded, Need, PickReport, Policy};
+use sixfold_results::{CacheState, Excluded, Need, PickReport, Policy, RunSettings};
 use sixfold_workload::{
     Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
     prepare_mix, tabulate,
@@ -46,8 +46,6 @@ use crate::refusal::Candidate;
 use backend::PickBackend;
 use measurement::{Contestant, PickMeasurement};
 use pooled::Question;
-use sixfold_results::CacheState;
-use sixfold_results::RunSettings;
 use tasks::Tasks;
 
 /// The settings of [`pick`].

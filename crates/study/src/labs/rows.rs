@@ -1,12 +1,11 @@
 //! Makes the rows of a finding from the measured entries, for all labs.
 
-use sixfold_results::Time;
+use sixfold_results::{Agreement, ResultRow, Time};
 use sixfold_workload::TimedBackend;
 
 use crate::engine::measure::Entry;
 use sixfold_results::ranking::{rank, time};
 use sixfold_results::statistics::{Median, median};
-use sixfold_results::{Agreement, ResultRow};
 
 /// The measured entries of one task, which are compared with each other.
 pub(crate) struct Group<'g> {

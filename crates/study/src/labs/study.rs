@@ -21,15 +21,13 @@ use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
 use crate::labs::rows::Group;
 use sixfold_results::{
-    Agreement, BackendRefusal, BackendReport, Control, Refusal, ResultRow, Samples,
+    Agreement, BackendRefusal, BackendReport, CacheState, Control, Policy, Refusal, Report,
+    ResultRow, RunSettings, Samples, noise,
 };
-use sixfold_results::{CacheState, noise};
-use sixfold_results::{Report, RunSettings};
 
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::refusal::Candidate;
-use sixfold_results::Policy;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::MachineClock;

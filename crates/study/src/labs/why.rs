@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use sixfold::Relation;
-use sixfold_results::{Bound, Model, Reads, Timed, Why, WhyRow};
+use sixfold_results::{BackendReport, Bound, Model, Reads, Report, Timed, Why, WhyRow};
 use sixfold_workload::{
     Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MachineClock, MemorySpeed,
     ReadsObserver,
@@ -25,8 +25,6 @@ use crate::engine::run::start_run;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::labs::study::{Settings, StudyError, study_on};
 use crate::refusal::Candidate;
-use sixfold_results::BackendReport;
-use sixfold_results::Report;
 use sixfold_results::numbers::bytes;
 
 /// The stage before the times are measured.

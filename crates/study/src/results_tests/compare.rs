@@ -2,17 +2,15 @@ use crate::engine::effort::Effort;
 use crate::engine::simulated_machine::SimulatedMachine;
 use crate::labs::orders::orders_on;
 use crate::labs::study::study_on;
-use sixfold_results::Policy;
 use sixfold_results::{
-    CacheState, Changes, CompareError, CompareSettings, Measurement, Report, Results, Standing,
-    Verdict, compare,
+    CacheState, Changes, CompareError, CompareSettings, Measurement, Policy, Report, ResultRow,
+    Results, Samples, Standing, Verdict, compare,
 };
 use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 
 use crate::{Operation, Settings, StudyMesh};
-use sixfold_results::{ResultRow, Samples};
 
 /// Returns a study with known samples: 1000 ns times `factor`.
 fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {

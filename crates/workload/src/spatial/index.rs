@@ -11,8 +11,7 @@ use sixfold::spatial::{
     SurfaceQueries, UniformGrid,
 };
 use sixfold::{QueryCost, VertexId};
-use sixfold_results::SpatialTask;
-use sixfold_results::Time;
+use sixfold_results::{SpatialTask, Time};
 
 /// The name of the list, which visits all elements for each query.
 pub const LIST: &str = "list";

@@ -3,8 +3,7 @@
 use sixfold_core::Counts;
 
 use super::settings::scaled;
-use sixfold_results::Cache;
-use sixfold_results::{CacheLimit, Fit, SizeReport, Slope};
+use sixfold_results::{Cache, CacheLimit, Fit, SizeReport, Slope};
 use sixfold_workload::{Backend, Operation};
 
 pub(super) fn fits(

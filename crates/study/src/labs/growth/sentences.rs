@@ -2,9 +2,7 @@
 
 use super::{CacheLimit, Fit};
 use sixfold_results::numbers::{grouped, list, times};
-use sixfold_results::{Agreement, ResultRow, Standing};
-use sixfold_results::{Cache, last_level_bytes};
-use sixfold_results::{SizeReport, Slope};
+use sixfold_results::{Agreement, Cache, ResultRow, SizeReport, Slope, Standing, last_level_bytes};
 use sixfold_workload::Operation;
 
 pub(super) fn sentences(

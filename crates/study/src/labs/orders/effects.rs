@@ -2,9 +2,8 @@
 
 use sixfold::shapes::Order;
 
-use sixfold_results::Time;
 use sixfold_results::ranking::quotient;
-use sixfold_results::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
+use sixfold_results::{Comparison, Factor, Larger, OrderEffect, StructureEffect, Time};
 use sixfold_workload::Operation;
 
 pub(super) struct OrderSamples {

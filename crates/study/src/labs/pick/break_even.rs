@@ -1,12 +1,11 @@
 //! The number of operations after which building a structure has paid off.
 
-use sixfold_results::Time;
+use sixfold_results::{BreakEven, Ranked, Time};
 use sixfold_workload::Task;
 
 use crate::engine::measure::Entry;
 use crate::labs::pick::backend::Candidate;
 use sixfold_results::statistics::Median;
-use sixfold_results::{BreakEven, Ranked};
 
 /// A candidate with its measured tasks.
 pub(crate) struct MeasuredMix<'m> {

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 use sixfold_core::Counts;
-use sixfold_results::Time;
+use sixfold_results::{
+    Agreement, BreakEven, Excluded, MeshReport, Ranked, Samples, Standing, Time, corrected_times,
+};
 use sixfold_workload::{Operation, Task, TimedBackend};
 
 use crate::engine::agreement::compare_checksums;
@@ -18,11 +20,8 @@ use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::{MeasuredMix, break_even};
 use crate::labs::pick::tasks::TaskPlan;
 use crate::labs::study::is_skewed;
-use sixfold_results::corrected_times;
 use sixfold_results::ranking::{NO_DIFFERENCE, rank, ratio};
 use sixfold_results::statistics::Median;
-use sixfold_results::{Agreement, MeshReport, Samples, Standing};
-use sixfold_results::{BreakEven, Excluded, Ranked};
 
 /// The properties of a backend, and the backend.
 pub(crate) type Contestant<'b> = (Candidate, Box<dyn TimedBackend + 'b>);

@@ -7,13 +7,10 @@ use sixfold_workload::Workload;
 use crate::labs::pick::choice::choose;
 use crate::labs::pick::measurement::Outcome;
 use crate::labs::pick::reasons;
-use sixfold_results::Need;
-use sixfold_results::Run;
-use sixfold_results::Timer;
 use sixfold_results::ranking::NO_DIFFERENCE;
 use sixfold_results::statistics::MIN_SAMPLES;
 use sixfold_results::{
-    BreakEven, Excluded, MeshRanking, PartCost, PickReport, ProgramReport, Ranked,
+    BreakEven, Excluded, MeshRanking, Need, PartCost, PickReport, ProgramReport, Ranked, Run, Timer,
 };
 
 /// What is asked of the backends.

@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use sixfold::{QueryCost, UnknownName};
-use sixfold_results::Policy;
-use sixfold_results::{OwnData, Time};
+use sixfold_results::{
+    AskedCount, CacheState, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport, RUN,
+    RunSettings, Time,
+};
 use sixfold_workload::{
     Access, Amount, Contestant, Job, MachineClock, Operation, ProgramRefusal, Series, Suite,
     SuiteProgram, Task, TimedBackend, Workload, patch,
@@ -28,10 +30,7 @@ use crate::labs::pick::tasks::{TaskPlan, with_own_time};
 use crate::labs::pick::{MeasureContext, PickError, needs};
 use crate::labs::study::StudyError;
 use crate::refusal;
-use sixfold_results::CacheState;
-use sixfold_results::RunSettings;
 use sixfold_results::numbers::{counted, duration};
-use sixfold_results::{AskedCount, Excluded, PartCost, PickReport, ProgramReport, RUN};
 
 /// Building is timed in every n-th round.
 const BUILDS_EVERY: u32 = 3;

@@ -3,12 +3,9 @@
 use crate::engine::warnings::machine_warnings;
 use crate::labs::pick::choice::{rule, what_would_change};
 use crate::packages;
-use sixfold_results::EQUAL_UP_TO;
-use sixfold_results::Need;
-use sixfold_results::Samples;
 use sixfold_results::numbers::{counted, duration, figure, grouped, list, rounded};
 use sixfold_results::statistics::MIN_SAMPLES;
-use sixfold_results::{PartCost, PickReport, ProgramReport, Ranked};
+use sixfold_results::{EQUAL_UP_TO, Need, PartCost, PickReport, ProgramReport, Ranked, Samples};
 use sixfold_workload::{Action, Workload};
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.

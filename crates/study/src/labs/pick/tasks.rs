@@ -4,14 +4,13 @@
 use sixfold::PolygonMesh;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold_core::Counts;
-use sixfold_results::Time;
+use sixfold_results::{MIX, PartCost, Time};
 use sixfold_workload::{Action, Operation, Schedule, Task, Workload};
 
 use crate::engine::measure::Entry;
 use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::MeasuredMix;
 use sixfold_results::statistics::Median;
-use sixfold_results::{MIX, PartCost};
 
 /// Parts that a mix contains are also timed alone, to explain the result: in every n-th round.
 const PARTS_EVERY: u32 = 3;

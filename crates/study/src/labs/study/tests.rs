@@ -5,8 +5,7 @@ use sixfold::{PolygonMesh, shapes};
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
-use sixfold_results::Results;
-use sixfold_results::{RefusalKind, Standing};
+use sixfold_results::{RefusalKind, Results, Standing};
 use sixfold_workload::{ElementKind, Task};
 
 /// Speeds of machines, relative to the usual one.
