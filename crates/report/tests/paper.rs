@@ -135,8 +135,8 @@ fn the_data_of_figures_are_those_of_the_results() {
     assert_eq!(bytes, expected.collect::<Vec<_>>());
     let lines = columns(text(&files, "break-even.csv"), ["backend", "run_ns"]);
     for [backend, ns] in lines {
-        let mut rows = study.rows(Operation::VertexNormal.name());
-        let row = rows.find(|row| row.backend == backend).expect("measured");
+        let row = study.row(Operation::VertexNormal.name(), &backend);
+        let row = row.expect("measured");
         assert_eq!(ns.parse().ok(), row.median_ns);
     }
 }

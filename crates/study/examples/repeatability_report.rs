@@ -197,11 +197,7 @@ fn differences(reports: &[Report]) -> String {
         for backend in &reports[0].backends {
             let rows: Vec<&ResultRow> = reports
                 .iter()
-                .filter_map(|report| {
-                    report
-                        .rows(operation.name())
-                        .find(|r| r.backend == backend.name)
-                })
+                .filter_map(|report| report.row(operation.name(), &backend.name))
                 .collect();
             let ratios: Vec<f64> = rows.iter().filter_map(|row| row.ratio_to_best).collect();
             if ratios.is_empty() || median(&ratios) <= GAP {

@@ -113,8 +113,7 @@ fn a_long_scan_is_run_once_unless_it_was_named() {
             ..settings(Effort::of_ms(budget_ms))
         };
         let report = quick(&study_mesh, &settings).expect("both hold it");
-        let mut rows = report.rows(Operation::FfBfs.name());
-        let row = rows.find(|row| row.backend == "polygon-soup");
+        let row = report.row(Operation::FfBfs.name(), "polygon-soup");
         let row = row.expect("the search was run");
         assert_eq!(row.standing, Some(Standing::Slower));
         (row.samples, row.warm_up_only)
@@ -231,8 +230,7 @@ fn scans_are_slower_and_their_samples_are_small() {
     let report = quick(&study_mesh, &settings(Effort::of_ms(4000)));
     let report = report.expect("all backends hold it");
     let soup = |operation: Operation| {
-        let mut rows = report.rows(operation.name());
-        let row = rows.find(|row| row.backend == "polygon-soup");
+        let row = report.row(operation.name(), "polygon-soup");
         row.expect("the soup can hold the mesh")
     };
     for relation in [
