@@ -207,8 +207,8 @@ fn results_of_several_commands_are_drawn_on_one_page() {
 #[test]
 fn invalid_results_are_refused() {
     let sixfold = grid();
-    sixfold.file("other.json", "{\"schema\": 2}");
-    sixfold.file("cut.json", "{\"schema\": 2, \"findings\": [");
+    sixfold.file("other.json", "{\"schema\": 4}");
+    sixfold.file("cut.json", "{\"schema\": 4, \"findings\": [");
     sixfold.file("mesh.obj", TETRAHEDRON);
     fs::create_dir(sixfold.folder().join("foreign")).expect("a folder");
     sixfold.file("foreign/results.json", "{\"mine\": true}");
