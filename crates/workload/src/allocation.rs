@@ -1,14 +1,13 @@
 //! The bytes that an operation allocates, and the bytes of its result.
 
-use sixfold::remeshing::{Decimation, Target, decimate};
+use sixfold::PolygonMesh;
 use sixfold::subdivision::Method;
-use sixfold::{FaceId, MeshEdit, PolygonMesh, Representation};
 use sixfold_core::Counts;
 
 use crate::backend::Backend;
 use crate::clock::Clock;
-use crate::edit_pass::EditPass;
 use crate::operation::Operation;
+use crate::operation::edit_pass::counts_after;
 use crate::series::Series;
 use sixfold_results::Time;
 
@@ -108,8 +107,10 @@ impl Backend {
     }
 
     fn result_bytes(&self, operation: Operation, polygons: &PolygonMesh, counts: &Counts) -> usize {
+        if let Some(bytes) = operation.result_bytes(counts) {
+            return bytes;
+        }
         let counts = match operation {
-            Operation::FfBfs => return size_of::<FaceId>() * counts.faces,
             Operation::EditPass(pass) => counts_after(pass, self, polygons, counts),
             _ => match operation
                 .subdivision_job()
@@ -121,37 +122,4 @@ impl Backend {
         };
         (self.layout_bytes)(&counts)
     }
-}
-
-/// Returns the counts of the mesh after `pass`.
-fn counts_after(
-    pass: EditPass,
-    backend: &Backend,
-    polygons: &PolygonMesh,
-    before: &Counts,
-) -> Counts {
-    let ratio = match pass {
-        // These passes do not change the number of elements.
-        EditPass::SplitCollapse | EditPass::FlipAll => return *before,
-        EditPass::DecimateHalf => 0.5,
-        EditPass::DecimateTenth => 0.1,
-    };
-    let edits = backend.edits;
-    let counts = edits.and_then(|edits| (edits.decimated_counts)(polygons, ratio));
-    counts.unwrap_or(*before)
-}
-
-/// Returns the counts of the mesh after decimation to `ratio` of its faces; `None` if the
-/// decimation is refused.
-pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
-    polygons: &PolygonMesh,
-    ratio: f64,
-) -> Option<Counts> {
-    let mut mesh = M::from_polygons(polygons).ok()?;
-    let job = Decimation {
-        target: Target::Ratio(ratio),
-        ..Decimation::default()
-    };
-    decimate(&mut mesh, &job).ok()?;
-    Some(mesh.to_polygons().counts(mesh.edges().count()))
 }

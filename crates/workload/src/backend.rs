@@ -10,15 +10,14 @@ use sixfold::{
 };
 use sixfold_core::{Counts, Measured};
 
-use crate::allocation::decimated_counts;
 use crate::draw::Draw;
-use crate::edit_pass::{EditPass, PreparedEditor, prepare_pass};
 use crate::heap::{Heap, MeasuredMemory, measure_memory};
 use crate::job::TimedBackend;
 use crate::mix::{
     MixBackend, MixInput, PreparedMix, Route, Schedule, prepare_edit_mix, prepare_query_mix,
     tabulate_structure,
 };
+use crate::operation::edit_pass::{EditPass, PreparedEditor, decimated_counts, prepare_pass};
 use crate::reads::{ReadsObserver, count};
 use crate::single_edit::{SingleEdit, prepare_single};
 use crate::timed_structure::TimedStructure;

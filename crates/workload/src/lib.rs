@@ -10,7 +10,6 @@ mod built_in;
 mod caches;
 mod clock;
 mod draw;
-mod edit_pass;
 mod edit_place;
 mod heap;
 mod job;
@@ -24,7 +23,6 @@ mod reads;
 mod series;
 mod single_edit;
 pub mod spatial;
-mod subdivide;
 mod subdivision_job;
 mod sweeps;
 mod tables;
@@ -39,13 +37,14 @@ pub use built_in::{built_in, built_ins};
 pub use caches::caches;
 pub use clock::{Clock, MachineClock, timed};
 pub use draw::{Draw, Side};
-pub use edit_pass::{EditPass, Editor, Edits, PreparedEditor};
 pub use heap::{Heap, MeasuredMemory};
 pub use job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
 pub use memory_speed::MemorySpeed;
 pub use mix::{
     EditPlaceError, MixBackend, MixRefusal, PreparedMix, Route, Schedule, prepare_mix, tabulate,
 };
+pub use operation::edit_pass::{EditPass, Editor, Edits, PreparedEditor};
+pub use operation::subdivision::patch;
 pub use operation::{ElementKind, Operation};
 pub use program::{
     Asked, Contestant, EditProgram, MovingProgram, Program, ProgramRefusal, Recorded, Recording,
@@ -55,9 +54,7 @@ pub use read_probe::{CACHE_LINES, LINE_BYTES, REACH};
 pub use reads::{MAX_READS, ReadsObserver, SCAN_SAMPLE};
 pub use series::{CacheFlusher, MIN_TIMED_NS, Series, Start, exceeds_second_level};
 pub use single_edit::SingleEdit;
-pub use subdivide::patch;
 pub use subdivision_job::{PreparedRefiner, Refiner, SubdivisionJob, Way};
-pub use sweeps::field_sum;
 pub use trace::{Trace, TraceError};
 pub use workload::{Access, Action, Amount, ParseAmountError, Part, Workload};
 pub use workload_file::WorkloadError;

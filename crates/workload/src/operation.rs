@@ -1,11 +1,23 @@
-//! The operations that a study times, with names, queried relations and visited elements.
+//! The operations that a study times.
+//!
+//! An operation is one file of this folder: what is said about it (`DESCRIPTION`), its loop, and what a
+//! run does besides. An operation that visits the elements of the mesh is added to the studies, the
+//! workloads and the tables by a file with a `DESCRIPTION` and a function `sweep`, and by its line in
+//! `operations!` below.
 
 use sixfold::subdivision::{Method, Scheme};
-use sixfold::{PolygonMesh, QueryCost, Relation};
+use sixfold::{Counts, MeshQuery, PolygonMesh, QueryCost, Relation};
 use sixfold_results::{OperationGroup, OperationInfo, OwnBytes, OwnData};
 
-use crate::edit_pass::EditPass;
 use crate::subdivision_job::{SubdivisionJob, Way};
+use crate::sweeps::{Elements, Outputs, SweepResult, field_sum};
+
+pub(crate) mod build;
+pub(crate) mod edit_pass;
+mod relation;
+pub(crate) mod subdivision;
+
+use edit_pass::EditPass;
 
 sixfold_core::named! {
     /// One kind of element.
@@ -40,104 +52,268 @@ impl ElementKind {
     }
 }
 
-/// An operation that a study times.
-///
-/// An operation visits the elements in the order in which the structure stores them. The operation
-/// uses every handle that a query yields, so the compiler cannot omit the computation of a handle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Operation {
-    /// Builds the structure from a polygon mesh.
-    #[default]
-    Build,
-    /// Queries one relation at every element of one kind.
-    Relation(Relation),
-    /// Queries the faces of every vertex and the vertices of every face.
-    Circulate,
-    /// Stores for each face the mean of its vertex positions.
-    FaceBarycenter,
-    /// Stores the normal of each face, and then for each vertex the normalised sum of the normals
-    /// of its faces.
-    VertexNormal,
-    /// Moves each vertex to the mean position of its neighbours, after the means of all vertices
-    /// are computed.
-    VvSmooth,
-    /// Sums the lengths of all edges.
-    EdgeLength,
-    /// Counts the edges with one face.
-    Boundary,
-    /// Traverses all faces breadth first and adds the depths of the faces.
-    FfBfs,
-    /// Queries all nine relations: three at every vertex, three at every edge, three at every face.
-    AllQueries,
-    /// Runs one step of Catmull–Clark subdivision by the given method.
-    CatmullClark(Method),
-    /// Runs one step of Loop subdivision by the given method.
-    Loop(Method),
-    /// Runs a pass of edits on a copy of the mesh.
-    EditPass(EditPass),
+/// The unit of work by which the time of an operation is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unit {
+    Element(ElementKind),
+    /// One element that a query returns; in `flip_all`, one visit of an edge.
+    Visit,
+    /// A face of the refined mesh.
+    NewFace,
 }
 
-const RELATIONS: &[Relation; 9] = &Relation::ALL;
-/// Relations that a step of Catmull–Clark queries at each vertex.
-const VERTEX_RELATIONS: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
-/// Relations that a gathering or native step queries at each edge.
-const EDGE_RELATIONS: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
-/// Relations that every step queries at each face.
-const FACE_RELATIONS: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
+impl Unit {
+    /// Returns the kind of the elements that are counted; `None` if the unit is not an element of the
+    /// mesh.
+    pub(crate) const fn element(self) -> Option<ElementKind> {
+        match self {
+            Self::Element(kind) => Some(kind),
+            Self::Visit | Self::NewFace => None,
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Element(kind) => kind.name(),
+            Self::Visit => "visit",
+            Self::NewFace => "new face",
+        }
+    }
+}
+
+/// The number by which the results of an operation are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Checksum {
+    /// A count. The counts of all structures must be equal.
+    Count,
+    /// The sum of the lengths of edges.
+    Lengths,
+    /// The sum over the vectors that are stored for the faces ([`field_sum`]).
+    FaceValues,
+    /// The same for the vertices.
+    VertexValues,
+    /// The same for the positions of the mesh that the operation makes.
+    Positions,
+}
+
+/// The kinds of elements that an operation visits, in the order of the visits, each with the relations
+/// that are queried at its elements.
+type Visits = &'static [(ElementKind, &'static [Relation])];
+
+/// What is known about an operation without running it.
+pub(crate) struct Description {
+    name: &'static str,
+    /// What one run does, in at most 45 characters.
+    about: &'static str,
+    group: OperationGroup,
+    pub(crate) unit: Unit,
+    visits: Visits,
+    checksum: Checksum,
+    /// The maximum error of the checksum if terms cancel; O(corners).
+    noise: fn(&PolygonMesh) -> f64,
+    /// The operation can run on a sample of the elements; else it needs the whole mesh.
+    takes_samples: bool,
+    /// The clock stops between runs. While it is stopped, changes are undone or results are freed.
+    pauses_clock: bool,
+    /// The timed part of a run allocates memory.
+    allocates: bool,
+    /// A run enlarges tables that the next run reuses. The first run then takes longer.
+    grows_tables: bool,
+    /// The result depends on the order of the input: the operation starts at the first face, or edits
+    /// the elements one after another.
+    depends_on_order: bool,
+    /// Estimates the number of visited elements.
+    elements: fn(&PolygonMesh) -> usize,
+    /// The bytes of the result, if the result is not a mesh.
+    result_bytes: Option<fn(&Counts) -> usize>,
+    subdivision: Option<(Scheme, Method)>,
+}
+
+impl Description {
+    /// What most queries have in common.
+    const QUERIES: Self = Self {
+        name: "",
+        about: "",
+        group: OperationGroup::Queries,
+        unit: Unit::Visit,
+        visits: &[],
+        checksum: Checksum::Count,
+        noise: |_| 0.0,
+        takes_samples: true,
+        pauses_clock: false,
+        allocates: false,
+        grows_tables: false,
+        depends_on_order: false,
+        elements: PolygonMesh::face_count,
+        result_bytes: None,
+        subdivision: None,
+    };
+
+    /// What most traversals have in common.
+    const TRAVERSAL: Self = Self {
+        group: OperationGroup::Traversals,
+        ..Self::QUERIES
+    };
+}
+
+/// Returns the rounding error of a sum over positions that cancel each other.
+fn noise_of_corners(polygons: &PolygonMesh) -> f64 {
+    let corners = polygons.faces().corners().iter();
+    1e-6 * field_sum(corners.map(|&v| polygons.position(v)))
+}
+
+/// Makes the enum of the operations. The list has the operations that visit the elements of the mesh, each
+/// with its module.
+macro_rules! operations {
+    ($($(#[$about:meta])* $variant:ident = $module:ident,)+) => {
+        $(pub(crate) mod $module;)+
+
+        /// An operation that a study times.
+        ///
+        /// An operation visits the elements in the order in which the structure stores them. The
+        /// operation uses every handle that a query yields, so the compiler cannot omit the
+        /// computation of a handle.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Operation {
+            /// Builds the structure from a polygon mesh.
+            #[default]
+            Build,
+            /// Queries one relation at every element of one kind.
+            Relation(Relation),
+            $($(#[$about])* $variant,)+
+            /// Runs one step of Catmull–Clark subdivision by the given method.
+            CatmullClark(Method),
+            /// Runs one step of Loop subdivision by the given method.
+            Loop(Method),
+            /// Runs a pass of edits on a copy of the mesh.
+            EditPass(EditPass),
+        }
+
+        impl Operation {
+            /// All operations, in the order in which tables list them.
+            pub const ALL: [Self; 20 + [$(stringify!($module)),+].len()] = [
+                Self::Build,
+                Self::Relation(Relation::VertexVertices),
+                Self::Relation(Relation::VertexEdges),
+                Self::Relation(Relation::VertexFaces),
+                Self::Relation(Relation::EdgeVertices),
+                Self::Relation(Relation::EdgeEdges),
+                Self::Relation(Relation::EdgeFaces),
+                Self::Relation(Relation::FaceVertices),
+                Self::Relation(Relation::FaceEdges),
+                Self::Relation(Relation::FaceFaces),
+                $(Self::$variant,)+
+                Self::CatmullClark(Method::Gather),
+                Self::CatmullClark(Method::Scatter),
+                Self::CatmullClark(Method::Native),
+                Self::Loop(Method::Gather),
+                Self::Loop(Method::Scatter),
+                Self::Loop(Method::Native),
+                Self::EditPass(EditPass::SplitCollapse),
+                Self::EditPass(EditPass::FlipAll),
+                Self::EditPass(EditPass::DecimateHalf),
+                Self::EditPass(EditPass::DecimateTenth),
+            ];
+
+            pub(crate) const fn description(self) -> &'static Description {
+                match self {
+                    Self::Build => &build::DESCRIPTION,
+                    Self::Relation(relation) => &relation::DESCRIPTIONS[relation as usize],
+                    $(Self::$variant => &$module::DESCRIPTION,)+
+                    Self::CatmullClark(method) => &subdivision::CATMULL_CLARK[method as usize],
+                    Self::Loop(method) => &subdivision::LOOP[method as usize],
+                    Self::EditPass(pass) => &edit_pass::DESCRIPTIONS[pass as usize],
+                }
+            }
+
+            /// Runs the part of the operation that visits elements of `kind`.
+            #[inline]
+            pub(crate) fn sweep<M: MeshQuery, E: Elements<M>>(
+                self,
+                kind: ElementKind,
+                mesh: &M,
+                elements: &E,
+                outputs: &mut Outputs<M>,
+            ) -> SweepResult {
+                match self {
+                    Self::Relation(relation) => relation::query(relation, mesh, elements),
+                    $(Self::$variant => $module::sweep(kind, mesh, elements, outputs),)+
+                    // The functions `run` of their modules run these operations.
+                    Self::Build | Self::CatmullClark(_) | Self::Loop(_) | Self::EditPass(_) => {
+                        SweepResult::default()
+                    }
+                }
+            }
+        }
+    };
+}
+
+operations! {
+    /// Queries the faces of every vertex and the vertices of every face.
+    Circulate = circulate,
+    /// Stores for each face the mean of its vertex positions.
+    FaceBarycenter = face_barycenter,
+    /// Stores the normal of each face, and then for each vertex the normalised sum of the normals
+    /// of its faces.
+    VertexNormal = vertex_normal,
+    /// Moves each vertex to the mean position of its neighbours, after the means of all vertices
+    /// are computed.
+    VvSmooth = vv_smooth,
+    /// Sums the lengths of all edges.
+    EdgeLength = edge_length,
+    /// Counts the edges with one face.
+    Boundary = boundary,
+    /// Traverses all faces breadth first and adds the depths of the faces.
+    FfBfs = ff_bfs,
+    /// Queries all nine relations: three at every vertex, three at every edge, three at every face.
+    AllQueries = all_queries,
+}
 
 impl Operation {
-    /// All operations, in the order in which tables list them.
-    pub const ALL: [Self; 28] = [
-        Self::Build,
-        Self::Relation(Relation::VertexVertices),
-        Self::Relation(Relation::VertexEdges),
-        Self::Relation(Relation::VertexFaces),
-        Self::Relation(Relation::EdgeVertices),
-        Self::Relation(Relation::EdgeEdges),
-        Self::Relation(Relation::EdgeFaces),
-        Self::Relation(Relation::FaceVertices),
-        Self::Relation(Relation::FaceEdges),
-        Self::Relation(Relation::FaceFaces),
-        Self::Circulate,
-        Self::FaceBarycenter,
-        Self::VertexNormal,
-        Self::VvSmooth,
-        Self::EdgeLength,
-        Self::Boundary,
-        Self::FfBfs,
-        Self::AllQueries,
-        Self::CatmullClark(Method::Gather),
-        Self::CatmullClark(Method::Scatter),
-        Self::CatmullClark(Method::Native),
-        Self::Loop(Method::Gather),
-        Self::Loop(Method::Scatter),
-        Self::Loop(Method::Native),
-        Self::EditPass(EditPass::SplitCollapse),
-        Self::EditPass(EditPass::FlipAll),
-        Self::EditPass(EditPass::DecimateHalf),
-        Self::EditPass(EditPass::DecimateTenth),
+    /// The units that are not elements of the mesh, and their meaning for users.
+    pub const UNITS: [(&'static str, &'static str); 2] = [
+        (
+            Unit::Visit.name(),
+            "one element that a query returns; in flip_all, one visit of an edge",
+        ),
+        (Unit::NewFace.name(), "a face of the refined mesh"),
     ];
 
     /// Returns the name that users write for the operation, such as `vv_smooth`.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Build => "build",
-            Self::Relation(relation) => relation.name(),
-            Self::Circulate => "circulate",
-            Self::FaceBarycenter => "face_barycenter",
-            Self::VertexNormal => "vertex_normal",
-            Self::VvSmooth => "vv_smooth",
-            Self::EdgeLength => "edge_length",
-            Self::Boundary => "boundary",
-            Self::FfBfs => "ff_bfs",
-            Self::AllQueries => "all_queries",
-            Self::CatmullClark(Method::Gather) => "catmull_clark_gather",
-            Self::CatmullClark(Method::Scatter) => "catmull_clark_scatter",
-            Self::CatmullClark(Method::Native) => "catmull_clark_native",
-            Self::Loop(Method::Gather) => "loop_gather",
-            Self::Loop(Method::Scatter) => "loop_scatter",
-            Self::Loop(Method::Native) => "loop_native",
-            Self::EditPass(pass) => pass.name(),
+        self.description().name
+    }
+
+    /// Returns what one run of the operation does, in at most 45 characters, for lists.
+    pub const fn about(self) -> &'static str {
+        self.description().about
+    }
+
+    /// Returns the group of the operation in lists.
+    pub const fn group(self) -> OperationGroup {
+        self.description().group
+    }
+
+    /// Returns the unit of work by which the time of the operation is divided: `vertex`, `edge`,
+    /// `face`, or one of [`UNITS`](Self::UNITS).
+    pub const fn unit(self) -> &'static str {
+        self.description().unit.name()
+    }
+
+    /// Returns what results say about the operation.
+    pub fn info(self) -> OperationInfo {
+        let step = self.description().subdivision;
+        let title = |scheme| match scheme {
+            Scheme::Loop => "Loop",
+            _ => "Catmull–Clark",
+        };
+        OperationInfo {
+            name: self.name().into(),
+            group: self.group(),
+            about: self.about().into(),
+            unit: self.unit().into(),
+            scheme: step.map(|(scheme, _)| title(scheme).into()),
+            method: step.map(|(_, method)| method.name().into()),
         }
     }
 
@@ -156,9 +332,14 @@ impl Operation {
         Some(SubdivisionJob::new(scheme, way, 1))
     }
 
+    /// Returns the subdivision scheme; `None` if the operation is not a subdivision.
+    pub fn scheme(self) -> Option<Scheme> {
+        self.description().subdivision.map(|(scheme, _)| scheme)
+    }
+
     /// Returns true if the operation is a subdivision.
     pub const fn subdivides(self) -> bool {
-        matches!(self, Self::CatmullClark(_) | Self::Loop(_))
+        self.description().subdivision.is_some()
     }
 
     /// Returns true if the operation makes another mesh, by subdivision or by edits.
@@ -169,197 +350,65 @@ impl Operation {
     /// Returns true if a run enlarges tables that the next run reuses. The first run then takes
     /// longer than the following runs.
     pub const fn grows_tables(self) -> bool {
-        matches!(
-            self,
-            Self::CatmullClark(Method::Native)
-                | Self::Loop(Method::Native)
-                | Self::EditPass(EditPass::SplitCollapse | EditPass::FlipAll)
-        )
+        self.description().grows_tables
     }
 
     /// Returns true if the clock stops between runs. While the clock is stopped, changes are undone
     /// or results are freed.
     pub const fn pauses_clock(self) -> bool {
-        matches!(self, Self::Build | Self::VvSmooth | Self::EditPass(_))
+        self.description().pauses_clock
     }
 
     /// Returns true if the timed part of the operation allocates memory.
     pub const fn allocates(self) -> bool {
-        matches!(self, Self::Build | Self::FfBfs) || self.creates_mesh()
+        self.description().allocates
+    }
+
+    /// Returns true if the result depends on the order of the input: the operation starts at the
+    /// first face, or edits the elements one after another.
+    pub const fn depends_on_order(self) -> bool {
+        self.description().depends_on_order
+    }
+
+    /// Returns true if the operation can run on a sample of the elements instead of all elements.
+    /// Building, `ff_bfs`, subdivisions and edit passes need whole meshes.
+    pub const fn can_be_sampled(self) -> bool {
+        self.description().takes_samples
+    }
+
+    /// Returns true if the checksum of the operation is a count. The counts of all structures must
+    /// be exactly equal.
+    pub const fn has_exact_checksum(self) -> bool {
+        matches!(self.description().checksum, Checksum::Count)
+    }
+
+    /// Returns the maximum error of the checksum on `polygons` if terms cancel; O(corners).
+    pub fn noise(self, polygons: &PolygonMesh) -> f64 {
+        (self.description().noise)(polygons)
     }
 
     /// Estimates the number of elements that the operation visits on `polygons`. Callers need the
     /// estimate if no run has counted the elements.
     pub fn estimated_elements(self, polygons: &PolygonMesh) -> usize {
-        match self {
-            Self::CatmullClark(_) => polygons.corner_count(),
-            Self::Loop(_) => polygons.face_count().saturating_mul(4),
-            _ => polygons.face_count(),
-        }
+        (self.description().elements)(polygons)
     }
 
-    /// Returns the subdivision scheme; `None` if the operation is not a subdivision.
-    pub const fn scheme(self) -> Option<Scheme> {
-        match self {
-            Self::CatmullClark(_) => Some(Scheme::CatmullClark),
-            Self::Loop(_) => Some(Scheme::Loop),
-            _ => None,
-        }
-    }
-
-    /// Returns the group of the operation in lists.
-    pub const fn group(self) -> OperationGroup {
-        match self {
-            Self::Build => OperationGroup::Build,
-            Self::Relation(_) | Self::Circulate | Self::AllQueries => OperationGroup::Queries,
-            Self::FaceBarycenter
-            | Self::VertexNormal
-            | Self::VvSmooth
-            | Self::EdgeLength
-            | Self::Boundary
-            | Self::FfBfs => OperationGroup::Traversals,
-            Self::EditPass(_) => OperationGroup::Edits,
-            Self::CatmullClark(_) | Self::Loop(_) => OperationGroup::Subdivision,
-        }
-    }
-
-    /// Returns what results say about the operation.
-    pub fn info(self) -> OperationInfo {
-        let (scheme, method) = match self {
-            Self::CatmullClark(method) => (Some("Catmull–Clark"), Some(method)),
-            Self::Loop(method) => (Some("Loop"), Some(method)),
-            _ => (None, None),
-        };
-        OperationInfo {
-            name: self.name().into(),
-            group: self.group(),
-            about: self.about().into(),
-            unit: self.unit().into(),
-            scheme: scheme.map(Into::into),
-            method: method.map(|method| method.name().into()),
-        }
-    }
-
-    /// Returns what one run of the operation does, in at most 45 characters, for lists.
-    pub const fn about(self) -> &'static str {
-        match self {
-            Self::Build => "builds the structure from a polygon mesh",
-            Self::Relation(relation) => match relation {
-                Relation::VertexVertices => "the other ends of the edges at each vertex",
-                Relation::VertexEdges => "the edges that end at each vertex",
-                Relation::VertexFaces => "the faces around each vertex",
-                Relation::EdgeVertices => "the two ends of each edge",
-                Relation::EdgeEdges => "the edges that share an end with each edge",
-                Relation::EdgeFaces => "the faces along each edge",
-                Relation::FaceVertices => "the corners of each face",
-                Relation::FaceEdges => "the sides of each face",
-                Relation::FaceFaces => "the faces that share an edge with each face",
-            },
-            Self::Circulate => "vertex_faces, then face_vertices",
-            Self::AllQueries => "all nine relations",
-            Self::FaceBarycenter => "stores the mean of the corners of each face",
-            Self::VertexNormal => "stores the normals of faces, then of vertices",
-            Self::VvSmooth => "moves each vertex to its neighbours' mean",
-            Self::EdgeLength => "sums the lengths of all edges",
-            Self::Boundary => "counts the edges with one face",
-            Self::FfBfs => "visits the faces breadth first",
-            Self::CatmullClark(method) => match method {
-                Method::Gather => "Catmull–Clark; new points query neighbours",
-                Method::Scatter => "Catmull–Clark; one pass over the faces",
-                Method::Native => "Catmull–Clark; splits the structure's tables",
-            },
-            Self::Loop(method) => match method {
-                Method::Gather => "Loop; new points query neighbours",
-                Method::Scatter => "Loop; one pass over the faces",
-                Method::Native => "Loop; splits the structure's tables",
-            },
-            Self::EditPass(pass) => match pass {
-                EditPass::SplitCollapse => "adds a vertex to each face, then collapses it",
-                EditPass::FlipAll => "flips each edge that can be flipped, twice",
-                EditPass::DecimateHalf => "collapses edges until half the faces are left",
-                EditPass::DecimateTenth => "collapses edges until a tenth is left",
-            },
-        }
-    }
-
-    /// The units that are not elements of the mesh, and their meaning for users.
-    pub const UNITS: [(&'static str, &'static str); 2] = [
-        (
-            "visit",
-            "one element that a query returns; in flip_all, one visit of an edge",
-        ),
-        ("new face", "a face of the refined mesh"),
-    ];
-
-    /// Returns the unit of work by which the time of the operation is divided: `vertex`, `edge`,
-    /// `face`, or one of [`UNITS`](Self::UNITS).
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Relation(relation) => ElementKind::queried_by(relation).name(),
-            Self::VertexNormal | Self::VvSmooth => ElementKind::Vertex.name(),
-            Self::EdgeLength | Self::Boundary => ElementKind::Edge.name(),
-            Self::Build | Self::FaceBarycenter | Self::FfBfs => ElementKind::Face.name(),
-            Self::Circulate | Self::AllQueries => "visit",
-            Self::CatmullClark(_) | Self::Loop(_) => "new face",
-            Self::EditPass(EditPass::FlipAll) => "visit",
-            Self::EditPass(_) => ElementKind::Face.name(),
-        }
+    /// Returns the bytes of the result on a mesh with `counts`; `None` if the result is a mesh.
+    pub(crate) fn result_bytes(self, counts: &Counts) -> Option<usize> {
+        self.description().result_bytes.map(|bytes| bytes(counts))
     }
 
     /// Returns the kinds of elements that the operation visits, in the order of the visits.
-    pub const fn kinds(self) -> &'static [ElementKind] {
-        const V: &[ElementKind] = &[ElementKind::Vertex];
-        const E: &[ElementKind] = &[ElementKind::Edge];
-        const F: &[ElementKind] = &[ElementKind::Face];
-        match self {
-            Self::Build => &[],
-            Self::Relation(relation) => match ElementKind::queried_by(relation) {
-                ElementKind::Vertex => V,
-                ElementKind::Edge => E,
-                ElementKind::Face => F,
-            },
-            Self::Circulate => &[ElementKind::Vertex, ElementKind::Face],
-            Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter) => F,
-            Self::CatmullClark(_) | Self::Loop(_) => &ElementKind::ALL,
-            Self::EditPass(EditPass::FlipAll) => E,
-            Self::EditPass(_) => V,
-            Self::FaceBarycenter | Self::FfBfs => F,
-            Self::VertexNormal => &[ElementKind::Face, ElementKind::Vertex],
-            Self::VvSmooth => V,
-            Self::EdgeLength | Self::Boundary => E,
-            Self::AllQueries => &ElementKind::ALL,
-        }
+    pub(crate) fn kinds(self) -> impl Iterator<Item = ElementKind> {
+        self.description().visits.iter().map(|&(kind, _)| kind)
     }
 
     /// Returns the relations that the operation queries at elements of `kind`.
     pub fn relations(self, kind: ElementKind) -> &'static [Relation] {
-        let one = |relation: Relation| std::slice::from_ref(&RELATIONS[relation as usize]);
-        match (self, kind) {
-            (Self::Relation(relation), _) if ElementKind::queried_by(relation) == kind => {
-                one(relation)
-            }
-            (Self::Circulate | Self::VertexNormal, ElementKind::Vertex) => {
-                one(Relation::VertexFaces)
-            }
-            (Self::Circulate | Self::VertexNormal | Self::FaceBarycenter, ElementKind::Face) => {
-                one(Relation::FaceVertices)
-            }
-            (Self::VvSmooth, ElementKind::Vertex) => one(Relation::VertexVertices),
-            (Self::EdgeLength, ElementKind::Edge) => one(Relation::EdgeVertices),
-            (Self::Boundary, ElementKind::Edge) => one(Relation::EdgeFaces),
-            (Self::FfBfs, ElementKind::Face) => one(Relation::FaceFaces),
-            (Self::CatmullClark(_) | Self::Loop(_), ElementKind::Face) => FACE_RELATIONS,
-            (Self::CatmullClark(Method::Scatter) | Self::Loop(Method::Scatter), _) => &[],
-            (Self::CatmullClark(_), ElementKind::Vertex) => VERTEX_RELATIONS,
-            (Self::Loop(_), ElementKind::Vertex) => one(Relation::VertexVertices),
-            (Self::CatmullClark(_) | Self::Loop(_), ElementKind::Edge) => EDGE_RELATIONS,
-            // An edit queries at least these relations.
-            (Self::EditPass(EditPass::FlipAll), ElementKind::Edge) => one(Relation::EdgeFaces),
-            (Self::EditPass(EditPass::FlipAll), _) => &[],
-            (Self::EditPass(_), ElementKind::Vertex) => one(Relation::VertexFaces),
-            (Self::AllQueries, _) => &RELATIONS[3 * kind.index()..][..3],
-            _ => &[],
-        }
+        let mut visits = self.description().visits.iter();
+        visits
+            .find(|&&(visited, _)| visited == kind)
+            .map_or(&[], |&(_, relations)| relations)
     }
 
     /// Returns one value for each kind of element. The value is true if a structure with the query
@@ -385,25 +434,22 @@ impl Operation {
         ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Returns true if the operation can run on a sample of the elements instead of all elements.
-    /// Building, `ff_bfs`, subdivisions and edit passes need whole meshes.
-    pub const fn can_be_sampled(self) -> bool {
-        !matches!(self, Self::Build | Self::FfBfs) && !self.creates_mesh()
-    }
-
-    /// Returns true if the checksum of the operation is a count. The counts of all structures must
-    /// be exactly equal.
-    pub const fn has_exact_checksum(self) -> bool {
-        !matches!(
-            self,
-            Self::FaceBarycenter
-                | Self::VertexNormal
-                | Self::VvSmooth
-                | Self::EdgeLength
-                | Self::CatmullClark(_)
-                | Self::Loop(_)
-                | Self::EditPass(_)
-        )
+    /// Returns the checksum of an operation that visited `elements` of `mesh` with the result `sum`.
+    pub(crate) fn checksum<M: MeshQuery, E: Elements<M>>(
+        self,
+        mesh: &M,
+        elements: &E,
+        outputs: &Outputs<M>,
+        sum: SweepResult,
+    ) -> f64 {
+        match self.description().checksum {
+            Checksum::Count => sum.count as f64,
+            Checksum::Lengths | Checksum::Positions => sum.sum,
+            Checksum::FaceValues => field_sum(elements.faces(mesh).map(|f| outputs.faces[f])),
+            Checksum::VertexValues => {
+                field_sum(elements.vertices(mesh).map(|v| outputs.vertices[v]))
+            }
+        }
     }
 }
 
@@ -455,7 +501,7 @@ mod tests {
                 );
                 assert_eq!(
                     relations.is_empty(),
-                    !operation.kinds().contains(&kind),
+                    !operation.kinds().any(|visited| visited == kind),
                     "{operation} of {kind:?}"
                 );
             }

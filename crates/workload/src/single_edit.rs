@@ -4,8 +4,8 @@ use sixfold::{Edit, MeshEdit, PolygonMesh, Refusal, Representation};
 use sixfold_core::EditOf;
 
 use crate::backend::Backend;
-use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{independent_faces, prepare_edit};
+use crate::operation::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::series::{ReusedCopies, Series};
 use sixfold_results::Time;
 

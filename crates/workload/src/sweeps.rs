@@ -1,4 +1,5 @@
-//! The loops of the operations, generic over the structure.
+//! What the loops of the operations share: the elements that they visit, their results and their checksums.
+//! The loops are in the files of the operations (`operation`), generic over the structure.
 //!
 //! Every loop is compiled separately for each structure. Inner loops use `for_each`: circulators
 //! are 5 to 20 % faster with it than with `for` (`vertex_normal`, `face_barycenter`, `edge_edges`
@@ -15,9 +16,7 @@
 use std::hash::Hasher;
 use std::hint::black_box;
 
-use sixfold::{FaceMap, Handle, MeshQuery, Point, Relation, VertexMap};
-
-use crate::operation::{ElementKind, Operation};
+use sixfold::{FaceMap, Handle, MeshQuery, Point, VertexMap};
 
 /// The elements that an operation visits.
 pub(crate) trait Elements<M: MeshQuery> {
@@ -83,47 +82,10 @@ impl SweepResult {
 }
 
 /// Returns a checksum of vectors: the sum of |x| + 2|y| + 3|z| over all vectors (x, y, z).
-pub fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
+pub(crate) fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
     let weighted_sum =
         |p: Point| f64::from(p.x).abs() + 2.0 * f64::from(p.y).abs() + 3.0 * f64::from(p.z).abs();
     points.map(weighted_sum).sum()
-}
-
-/// Runs the part of `operation` that visits elements of `kind`.
-#[inline]
-pub(crate) fn sweep_kind<M: MeshQuery, E: Elements<M>>(
-    operation: Operation,
-    kind: ElementKind,
-    mesh: &M,
-    elements: &E,
-    outputs: &mut Outputs<M>,
-) -> SweepResult {
-    match (operation, kind) {
-        (Operation::Relation(relation), _) => query_relation(relation, mesh, elements),
-        (Operation::Circulate, ElementKind::Vertex) => {
-            query_relation(Relation::VertexFaces, mesh, elements)
-        }
-        (Operation::Circulate, _) => query_relation(Relation::FaceVertices, mesh, elements),
-        (Operation::FaceBarycenter, _) => face_barycenters(mesh, elements, &mut outputs.faces),
-        (Operation::VertexNormal, ElementKind::Face) => {
-            face_normals(mesh, elements, &mut outputs.faces)
-        }
-        (Operation::VertexNormal, _) => {
-            vertex_normals(mesh, elements, &outputs.faces, &mut outputs.vertices)
-        }
-        (Operation::VvSmooth, _) => neighbour_means(mesh, elements, &mut outputs.vertices),
-        (Operation::EdgeLength, _) => edge_lengths(mesh, elements),
-        (Operation::Boundary, _) => boundary_edges(mesh, elements),
-        (Operation::FfBfs, _) => breadth_first(mesh),
-        (Operation::AllQueries, ElementKind::Vertex) => query_vertices(mesh, elements),
-        (Operation::AllQueries, ElementKind::Edge) => query_edges(mesh, elements),
-        (Operation::AllQueries, ElementKind::Face) => query_faces(mesh, elements),
-        // `TimedStructure` runs these operations.
-        (Operation::Build, _) => SweepResult::default(),
-        (Operation::CatmullClark(_) | Operation::Loop(_) | Operation::EditPass(_), _) => {
-            SweepResult::default()
-        }
-    }
 }
 
 /// Computes a number from a handle in a few instructions. Equal handles have equal numbers.
@@ -192,7 +154,10 @@ impl Sink {
 }
 
 #[inline(always)]
-fn sweep<I: Iterator>(elements: I, query: impl Fn(Sink, I::Item) -> Sink) -> SweepResult {
+pub(crate) fn sweep<I: Iterator>(
+    elements: I,
+    query: impl Fn(Sink, I::Item) -> Sink,
+) -> SweepResult {
     let (sink, queried) = elements.fold((Sink::default(), 0), |(sink, queried), element| {
         (query(sink, element), queried + 1)
     });
@@ -204,62 +169,9 @@ fn sweep<I: Iterator>(elements: I, query: impl Fn(Sink, I::Item) -> Sink) -> Swe
     }
 }
 
-/// Queries `relation` of all elements.
-///
-/// Each loop is a function of its own, of the shape that programs of users have. In one function with
-/// nine loops, the compiler changes the loops: on an Intel Xeon (family 6, model 167), `face_vertices`
-/// of a half-edge mesh then took 1.57 ns for a face instead of 1.42. `benches/checks/plain_program.py`
-/// compares each loop with a program of a user.
-#[inline]
-fn query_relation<M: MeshQuery, E: Elements<M>>(
-    relation: Relation,
-    mesh: &M,
-    elements: &E,
-) -> SweepResult {
-    macro_rules! sweep_relation {
-        ($query:ident $list:ident $from:ident $to:ident) => {{
-            #[inline(never)]
-            fn $query<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-                sweep(elements.$list(mesh), |sink, element| {
-                    sink.with(mesh.$query(element))
-                })
-            }
-            $query(mesh, elements)
-        }};
-    }
-    sixfold_core::match_relation!(relation, sweep_relation!)
-}
-
-#[inline(never)]
-fn query_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    sweep(elements.vertices(mesh), |sink, v| {
-        let sink = sink.with(mesh.vertex_vertices(v));
-        let sink = sink.with(mesh.vertex_edges(v));
-        sink.with(mesh.vertex_faces(v))
-    })
-}
-
-#[inline(never)]
-fn query_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    sweep(elements.edges(mesh), |sink, e| {
-        let sink = sink.with(mesh.edge_vertices(e));
-        let sink = sink.with(mesh.edge_edges(e));
-        sink.with(mesh.edge_faces(e))
-    })
-}
-
-#[inline(never)]
-fn query_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    sweep(elements.faces(mesh), |sink, f| {
-        let sink = sink.with(mesh.face_vertices(f));
-        let sink = sink.with(mesh.face_edges(f));
-        sink.with(mesh.face_faces(f))
-    })
-}
-
 /// Calls `store` for each element, and counts the elements.
 #[inline(always)]
-fn count_each<I: Iterator>(elements: I, mut store: impl FnMut(I::Item)) -> SweepResult {
+pub(crate) fn count_each<I: Iterator>(elements: I, mut store: impl FnMut(I::Item)) -> SweepResult {
     let mut count = 0;
     for element in elements {
         count += 1;
@@ -268,157 +180,6 @@ fn count_each<I: Iterator>(elements: I, mut store: impl FnMut(I::Item)) -> Sweep
     SweepResult {
         elements: count,
         count,
-        sum: 0.0,
-    }
-}
-
-#[inline(never)]
-fn face_barycenters<M: MeshQuery, E: Elements<M>>(
-    mesh: &M,
-    elements: &E,
-    barycenters: &mut FaceMap<M, Point>,
-) -> SweepResult {
-    count_each(elements.faces(mesh), |f| {
-        let (mut sum, mut corners) = (Point::ZERO, 0_u32);
-        mesh.face_vertices(f).for_each(|v| {
-            sum += mesh.position(v);
-            corners += 1;
-        });
-        barycenters[f] = sum * (1.0 / corners as f32);
-    })
-}
-
-/// Returns the unnormalised normal of a face: the sum of the cross products of its fan triangles.
-#[inline(always)]
-fn face_normal<M: MeshQuery>(mesh: &M, f: M::Face) -> Point {
-    // Positions are read without `map`, because the `fold` of `map` is not always inlined.
-    let mut corners = mesh.face_vertices(f);
-    let (Some(first), Some(second)) = (corners.next(), corners.next()) else {
-        return Point::ZERO; // unreachable, as a face has three corners; avoids the code of a panic
-    };
-    let first = mesh.position(first);
-    let (mut spoke, mut normal) = (mesh.position(second) - first, Point::ZERO);
-    for corner in corners {
-        let next = mesh.position(corner) - first;
-        normal += spoke.cross(next);
-        spoke = next;
-    }
-    normal
-}
-
-#[inline(never)]
-fn face_normals<M: MeshQuery, E: Elements<M>>(
-    mesh: &M,
-    elements: &E,
-    normals: &mut FaceMap<M, Point>,
-) -> SweepResult {
-    count_each(elements.faces(mesh), |f| normals[f] = face_normal(mesh, f))
-}
-
-#[inline(never)]
-fn vertex_normals<M: MeshQuery, E: Elements<M>>(
-    mesh: &M,
-    elements: &E,
-    face_normals: &FaceMap<M, Point>,
-    normals: &mut VertexMap<M, Point>,
-) -> SweepResult {
-    count_each(elements.vertices(mesh), |v| {
-        let mut sum = Point::ZERO;
-        mesh.vertex_faces(v).for_each(|f| sum += face_normals[f]);
-        let length = sum.length();
-        normals[v] = if length > 0.0 {
-            sum * (1.0 / length)
-        } else {
-            sum
-        };
-    })
-}
-
-/// Computes the mean of the neighbours of each vertex. An isolated vertex keeps its position.
-#[inline(never)]
-fn neighbour_means<M: MeshQuery, E: Elements<M>>(
-    mesh: &M,
-    elements: &E,
-    means: &mut VertexMap<M, Point>,
-) -> SweepResult {
-    count_each(elements.vertices(mesh), |v| {
-        let (mut sum, mut valence) = (Point::ZERO, 0_u32);
-        mesh.vertex_vertices(v).for_each(|neighbour| {
-            sum += mesh.position(neighbour);
-            valence += 1;
-        });
-        means[v] = if valence > 0 {
-            sum * (1.0 / valence as f32)
-        } else {
-            mesh.position(v)
-        };
-    })
-}
-
-#[inline(never)]
-fn edge_lengths<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    let (count, sum) = elements.edges(mesh).fold((0, 0.0), |(count, sum), e| {
-        let [a, b] = mesh.edge_vertices(e);
-        let length = mesh.position(a).distance(mesh.position(b));
-        (count + 1, sum + f64::from(length))
-    });
-    SweepResult {
-        elements: count,
-        count,
-        sum,
-    }
-}
-
-#[inline(never)]
-fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    let (edges, boundary) = elements.edges(mesh).fold((0, 0), |(edges, boundary), e| {
-        let is_boundary = mesh.edge_faces(e).count() == 1;
-        (edges + 1, boundary + u64::from(is_boundary))
-    });
-    SweepResult {
-        elements: edges,
-        count: boundary,
-        sum: 0.0,
-    }
-}
-
-/// Returns the sum of all depths.
-///
-/// Every neighbour is written to the end of the queue, but the queue grows only if the neighbour is
-/// new. This avoids a branch that a processor cannot predict.
-#[inline(never)]
-fn breadth_first<M: MeshQuery>(mesh: &M) -> SweepResult {
-    const UNVISITED: u32 = u32::MAX;
-    let Some(first) = mesh.faces().next() else {
-        return SweepResult::default();
-    };
-    let mut depths = mesh.face_map(UNVISITED);
-    let mut queue = vec![first; mesh.face_count() + 1];
-    let (mut head, mut tail, mut sum) = (0, 0, 0_u64);
-    for seed in mesh.faces() {
-        if depths[seed] != UNVISITED {
-            continue;
-        }
-        depths[seed] = 0;
-        queue[tail] = seed;
-        tail += 1;
-        while head < tail {
-            let face = queue[head];
-            head += 1;
-            let depth = depths[face];
-            sum += u64::from(depth);
-            mesh.face_faces(face).for_each(|neighbour| {
-                let seen = &mut depths[neighbour];
-                let new = *seen == UNVISITED;
-                *seen = if new { depth + 1 } else { *seen };
-                queue[tail] = neighbour;
-                tail += usize::from(new);
-            });
-        }
-    }
-    SweepResult {
-        elements: tail as u64,
-        count: sum,
         sum: 0.0,
     }
 }

@@ -6,13 +6,10 @@ use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
 use crate::backend::Backend;
 use crate::draw::{Draw, Side};
-use crate::edit_pass::{EditPass, PreparedEditor};
 use crate::job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
-use crate::operation::{ElementKind, Operation};
-use crate::series::{ReusedCopies, Series, Start, exceeds_second_level, time_making};
-use crate::subdivide::{patch, subdivide};
-use crate::subdivision_job::SubdivisionJob;
-use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
+use crate::operation::{ElementKind, Operation, build, edit_pass, subdivision, vv_smooth};
+use crate::series::{Series, Start, exceeds_second_level};
+use crate::sweeps::{All, Elements, Outputs, SweepResult};
 use sixfold_results::Time;
 
 /// A structure built from `polygons`, with storage for outputs and with handles of the drawn
@@ -45,76 +42,15 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         }
     }
 
-    fn build(&self, series: &Series<'_>) -> Run {
-        let build = || M::from_polygons(black_box(self.polygons)).ok();
-        let (time, built) = time_making(series, self.mesh.memory().total(), build);
-        let outcome = built.flatten().map(|mesh| Outcome {
-            checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
-            elements: mesh.face_count() as u64,
-            refused: 0,
-        });
-        Run::done(time, outcome)
-    }
-
-    /// Smooths a copy of the mesh in each run. Each copy starts with the original positions.
-    fn smooth(&mut self, series: &Series<'_>) -> Run {
-        let Self { mesh, outputs, .. } = self;
-        let mut copies = ReusedCopies::default();
-        let mut result = SweepResult::default();
-        let mut moved = Ok(());
-        fill_caches_with_outputs(mesh, outputs, series);
-        let time = copies.time(
-            series,
-            mesh.memory().total(),
-            || {
-                let copy = mesh.clone();
-                fill_caches(&copy, series);
-                copy
-            },
-            |copy| {
-                copy.clone_from(mesh);
-                fill_caches(copy, series);
-            },
-            |copy| {
-                result = sweep_kind(
-                    Operation::VvSmooth,
-                    ElementKind::Vertex,
-                    copy,
-                    &All,
-                    outputs,
-                );
-                moved = copy.set_positions(&outputs.vertices);
-            },
-        );
-        let outcome = copies.used_copy().filter(|_| series.check).map(|smoothed| {
-            let after = smoothed.vertices().map(|v| smoothed.position(v));
-            let means = mesh.vertices().map(|v| outputs.vertices[v]);
-            // Smoothing can move two vertices to one position. A structure that identifies vertices
-            // by position then merges them, or refuses the mesh. The checksum then uses the
-            // computed means.
-            let apart = smoothed.vertex_count() == mesh.vertex_count();
-            let checksum = match moved.is_ok() && apart {
-                true => field_sum(after),
-                false => field_sum(means),
-            };
-            Outcome {
-                checksum,
-                elements: result.elements,
-                refused: 0,
-            }
-        });
-        Run::done(time, outcome)
-    }
-
     fn run_whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         fill_caches(&self.mesh, series);
         fill_caches_with_outputs(&self.mesh, &self.outputs, series);
         let mut results = [SweepResult::default(); 3];
         let time = series.time_together(|| {
-            for &kind in operation.kinds() {
+            for kind in operation.kinds() {
                 let mesh = black_box(&self.mesh);
                 results[kind.index()] =
-                    black_box(sweep_kind(operation, kind, mesh, &All, &mut self.outputs));
+                    black_box(operation.sweep(kind, mesh, &All, &mut self.outputs));
             }
             black_box(&mut self.outputs);
         });
@@ -156,52 +92,23 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         };
         let mut results = [SweepResult::default(); 3];
         let mut total = Time::zero_like(series.clock.now());
-        for &kind in operation.kinds() {
+        for kind in operation.kinds() {
             let k = kind.index();
             let time = series.timed(|| {
                 let mesh = black_box(&self.mesh);
-                results[k] = black_box(sweep_kind(
-                    operation,
-                    kind,
-                    mesh,
-                    &elements,
-                    &mut self.outputs,
-                ));
+                results[k] = black_box(operation.sweep(kind, mesh, &elements, &mut self.outputs));
                 black_box(&mut self.outputs);
             });
             total = total.plus(time.scaled(scale[k]));
         }
         if operation == Operation::VvSmooth {
-            let mut copy = self.mesh.clone();
-            let swap = series.timed(|| {
-                let moved = copy.set_positions(&self.outputs.vertices);
-                black_box((&mut copy, moved.is_ok()));
-            });
-            total = total.plus(swap);
+            let moving = vv_smooth::time_moving(&self.mesh, &self.outputs.vertices, series);
+            total = total.plus(moving);
         }
         let outcome = series
             .check
             .then(|| self.outcome(operation, &elements, results, scale));
         Run::done(total, outcome)
-    }
-
-    /// Subdivides all faces, or a patch.
-    fn subdivide(
-        &mut self,
-        subdivision: SubdivisionJob,
-        sample: Option<ElementSample>,
-        series: &Series<'_>,
-    ) -> Run {
-        let Some(ElementSample { size, .. }) = sample else {
-            return subdivide(&self.backend, subdivision, self.polygons, series);
-        };
-        let patch = patch(self.polygons, size);
-        let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
-        let run = subdivide(&self.backend, subdivision, &patch, series);
-        Run {
-            time: run.time.scaled(scale),
-            ..run
-        }
     }
 
     fn outcome<E: Elements<M>>(
@@ -214,21 +121,8 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         let mesh = &self.mesh;
         let mut sum = SweepResult::default();
         results.into_iter().for_each(|result| sum.add(result));
-        let checksum = match operation {
-            Operation::FaceBarycenter => {
-                let faces = elements.faces(mesh);
-                field_sum(faces.map(|f| self.outputs.faces[f]))
-            }
-            Operation::VertexNormal | Operation::VvSmooth => {
-                let vertices = elements.vertices(mesh);
-                field_sum(vertices.map(|v| self.outputs.vertices[v]))
-            }
-            Operation::EdgeLength => sum.sum,
-            _ => sum.count as f64,
-        };
-        let unit = ElementKind::ALL
-            .into_iter()
-            .find(|kind| kind.name() == operation.unit());
+        let checksum = operation.checksum(mesh, elements, &self.outputs, sum);
+        let unit = operation.description().unit.element();
         let scaled = |kind: ElementKind, number: u64| number as f64 * scale[kind.index()];
         let visited = match unit {
             Some(kind) => scaled(kind, results[kind.index()].elements),
@@ -275,14 +169,16 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
         };
         let run = match (operation, job.sample, operation.subdivision_job()) {
             (Operation::EditPass(pass), sample, _) => {
-                run_edit_pass(&self.backend, pass, self.polygons, sample, series)
+                edit_pass::run(&self.backend, pass, self.polygons, sample, series)
             }
-            (_, sample, Some(subdivision)) => self.subdivide(subdivision, sample, series),
-            (Operation::Build, ..) => self.build(series),
+            (_, sample, Some(job)) => {
+                subdivision::run(&self.backend, job, self.polygons, sample, series)
+            }
+            (Operation::Build, ..) => build::run(&self.mesh, self.polygons, series),
             (operation, Some(sample), None) => {
                 return self.run_sampled(operation, sample, series);
             }
-            (Operation::VvSmooth, ..) => self.smooth(series),
+            (Operation::VvSmooth, ..) => vv_smooth::run(&self.mesh, &mut self.outputs, series),
             (operation, ..) => self.run_whole(operation, series),
         };
         Run {
@@ -298,7 +194,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
 /// Without this pass, the third-level cache holds the data of the previous backend. Runs that do
 /// not read in row order then need up to ten passes to fill the cache. For example, `edge_edges` on
 /// a winged-edge mesh of 200,000 faces took 8 ms instead of 3 ms.
-fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
+pub(crate) fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     if needs_filling(mesh, series) {
         let scans = M::cost(Relation::VertexFaces) == QueryCost::Scan;
         read_tables(black_box(mesh), scans);
@@ -306,7 +202,7 @@ fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
 }
 
 /// Reads the output arrays of the operations, if [`fill_caches`] reads the tables of `mesh`.
-fn fill_caches_with_outputs<M: Representation>(
+pub(crate) fn fill_caches_with_outputs<M: Representation>(
     mesh: &M,
     outputs: &Outputs<M>,
     series: &Series<'_>,
@@ -345,34 +241,6 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
             black_box(mesh.edge_vertices(e));
         });
     }
-}
-
-/// Runs a pass of edits over the mesh or over a patch.
-fn run_edit_pass(
-    backend: &Backend,
-    pass: EditPass,
-    polygons: &PolygonMesh,
-    sample: Option<ElementSample>,
-    series: &Series<'_>,
-) -> Run {
-    let piece = sample.map(|sample| patch(polygons, sample.size));
-    let input = piece.as_ref().unwrap_or(polygons);
-    let editor: Option<PreparedEditor> = pass.prepare(backend, input);
-    let mut editor = match editor.unwrap_or_else(|| Err("it cannot be edited".into())) {
-        Ok(editor) => editor,
-        Err(refusal) => return Run::refused(refusal, series),
-    };
-    let time = editor.time(series);
-    let outcome = series.check.then(|| {
-        let edits = editor.result();
-        Outcome {
-            checksum: edits.checksum,
-            elements: edits.elements,
-            refused: edits.refused_hash,
-        }
-    });
-    let scale = polygons.face_count() as f64 / input.face_count().max(1) as f64;
-    Run::done(time.scaled(scale), outcome)
 }
 
 /// The handles of the first elements of the draw.

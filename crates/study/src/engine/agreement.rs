@@ -2,13 +2,12 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold::{Point, PolygonMesh};
+use sixfold::PolygonMesh;
 
 use crate::engine::measure::Entry;
 use sixfold_results::Agreement;
 use sixfold_workload::Clock;
 use sixfold_workload::Operation;
-use sixfold_workload::field_sum;
 use sixfold_workload::{Job, Outcome, Series, Task, TimedBackend};
 
 /// Maximum relative difference of two `f32` sums of the same terms in different orders.
@@ -125,7 +124,7 @@ pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh
         return a == b;
     }
     // If the terms of a sum cancel, their rounding errors remain.
-    is_close(a, b) || (a - b).abs() <= noise(operation, polygons) + TOLERANCE * a.abs().max(b.abs())
+    is_close(a, b) || (a - b).abs() <= operation.noise(polygons) + TOLERANCE * a.abs().max(b.abs())
 }
 
 /// Returns whether two numbers differ only by rounding.
@@ -133,45 +132,9 @@ fn is_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= TOLERANCE * a.abs().max(b.abs())
 }
 
-/// Returns the maximum error of the checksum if terms cancel; O(corners).
-fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
-    match operation {
-        Operation::VertexNormal => 12.0 * cancelled_normals(polygons) as f64,
-        Operation::FaceBarycenter
-        | Operation::VvSmooth
-        | Operation::CatmullClark(_)
-        | Operation::Loop(_) => {
-            let corners = polygons.faces().corners().iter();
-            1e-6 * field_sum(corners.map(|&v| polygons.position(v)))
-        }
-        _ => 0.0,
-    }
-}
-
-/// Counts the vertices whose face normals cancel. The direction of their sum is noise.
-fn cancelled_normals(polygons: &PolygonMesh) -> usize {
-    let mut sums = vec![(Point::ZERO, 0.0_f32); polygons.vertex_count()];
-    for (_, face) in polygons.faces().iter() {
-        let at = |corner: usize| polygons.position(face[corner]);
-        let spokes = (1..face.len() - 1).map(|i| (at(i) - at(0)).cross(at(i + 1) - at(0)));
-        let (mut normal, mut size) = (Point::ZERO, 0.0);
-        for cross in spokes {
-            normal += cross;
-            size += cross.length();
-        }
-        for &v in face {
-            let (sum, total) = &mut sums[v.index()];
-            *sum += normal;
-            *total += size;
-        }
-    }
-    let cancels = |(sum, total): &&(Point, f32)| *total > 0.0 && sum.length() < 1e-3 * total;
-    sums.iter().filter(cancels).count()
-}
-
 #[cfg(test)]
 mod tests {
-    use sixfold::QueryCost;
+    use sixfold::{Point, QueryCost};
 
     use super::*;
     use sixfold_workload::MachineClock;
@@ -326,7 +289,7 @@ mod tests {
 
     #[test]
     fn cancelled_normals_allow_a_larger_difference() {
-        assert_eq!(cancelled_normals(&pillow()), 4);
+        assert_eq!(Operation::VertexNormal.noise(&pillow()), 48.0);
         assert!(agree(Operation::VertexNormal, 0.0, 3.0, &pillow()));
         assert!(!agree(Operation::VertexNormal, 0.0, 60.0, &pillow()));
     }

@@ -220,11 +220,9 @@ struct Column {
     order: Order,
 }
 
-/// Returns whether the result depends on the order of the input: the operation starts at the first
-/// face, or edits the elements one after another.
+/// Returns whether the result depends on the order of the input.
 fn depends_on_order(entry: &Entry) -> bool {
-    let operation = entry.operation();
-    matches!(operation, Some(Operation::FfBfs | Operation::EditPass(_)))
+    entry.operation().is_some_and(Operation::depends_on_order)
 }
 
 /// Compares the checksums of all orders. If the result of an operation depends on the order,

@@ -1,11 +1,16 @@
-//! Passes of edits over a whole mesh, on one structure.
+//! Passes of edits over a whole mesh, on one structure, and what studies know about them.
 
 use sixfold::remeshing::{Decimation, Target, decimate};
-use sixfold::{EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation};
+use sixfold::{
+    Counts, EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Relation, Representation,
+};
+use sixfold_results::{OperationGroup, Time};
 
+use super::subdivision::patch;
+use super::{Checksum, Description, ElementKind, Unit};
 use crate::backend::Backend;
+use crate::job::{ElementSample, Outcome, Run};
 use crate::series::{ReusedCopies, Series};
-use sixfold_results::Time;
 
 sixfold_core::named! {
     /// A series of edits over a whole triangle mesh.
@@ -26,7 +31,61 @@ sixfold_core::named! {
     }
 }
 
+/// The description of each pass, in the order of [`EditPass::ALL`].
+pub(super) const DESCRIPTIONS: [Description; 4] = [
+    Description {
+        grows_tables: true,
+        ..describe(
+            EditPass::SplitCollapse,
+            "adds a vertex to each face, then collapses it",
+        )
+    },
+    Description {
+        unit: Unit::Visit,
+        visits: &[(ElementKind::Edge, &[Relation::EdgeFaces])],
+        grows_tables: true,
+        ..describe(
+            EditPass::FlipAll,
+            "flips each edge that can be flipped, twice",
+        )
+    },
+    describe(
+        EditPass::DecimateHalf,
+        "collapses edges until half the faces are left",
+    ),
+    describe(
+        EditPass::DecimateTenth,
+        "collapses edges until a tenth is left",
+    ),
+];
+
+const fn describe(pass: EditPass, about: &'static str) -> Description {
+    Description {
+        name: pass.name(),
+        about,
+        unit: Unit::Element(ElementKind::Face),
+        group: OperationGroup::Edits,
+        // An edit queries at least these relations.
+        visits: &[(ElementKind::Vertex, &[Relation::VertexFaces])],
+        checksum: Checksum::Lengths,
+        takes_samples: false,
+        pauses_clock: true,
+        allocates: true,
+        depends_on_order: true,
+        ..Description::QUERIES
+    }
+}
+
 impl EditPass {
+    /// Returns the part of the faces that is left; `None` if the pass keeps the number of faces.
+    const fn ratio(self) -> Option<f64> {
+        match self {
+            Self::SplitCollapse | Self::FlipAll => None,
+            Self::DecimateHalf => Some(0.5),
+            Self::DecimateTenth => Some(0.1),
+        }
+    }
+
     /// Prepares the pass for the structure of `backend`. Returns `None` if the structure has no
     /// edits.
     ///
@@ -142,11 +201,10 @@ impl<M: Representation + MeshEdit + 'static> Editor for EditPassRun<M> {
                 copy.edges.clone_from(&tracked);
             },
             |copy| {
-                copy.edits = match (*pass, &mut copy.edges) {
-                    (EditPass::FlipAll, Some(edges)) => flip_all(&mut copy.mesh, edges),
-                    (EditPass::DecimateHalf, _) => decimate_to(&mut copy.mesh, 0.5),
-                    (EditPass::DecimateTenth, _) => decimate_to(&mut copy.mesh, 0.1),
-                    _ => split_collapse(&mut copy.mesh),
+                copy.edits = match (pass.ratio(), &mut copy.edges) {
+                    (_, Some(edges)) => flip_all(&mut copy.mesh, edges),
+                    (Some(ratio), None) => decimate_to(&mut copy.mesh, ratio),
+                    (None, None) => split_collapse(&mut copy.mesh),
                 };
             },
         )
@@ -325,4 +383,62 @@ impl<M: MeshEdit> EditLog<M> for TrackedEdges<M> {
             self.renamed.push((self.indices[old], new));
         }
     }
+}
+
+/// Runs a pass of edits over the mesh or over a patch.
+pub(crate) fn run(
+    backend: &Backend,
+    pass: EditPass,
+    polygons: &PolygonMesh,
+    sample: Option<ElementSample>,
+    series: &Series<'_>,
+) -> Run {
+    let piece = sample.map(|sample| patch(polygons, sample.size));
+    let input = piece.as_ref().unwrap_or(polygons);
+    let editor: Option<PreparedEditor> = pass.prepare(backend, input);
+    let mut editor = match editor.unwrap_or_else(|| Err("it cannot be edited".into())) {
+        Ok(editor) => editor,
+        Err(refusal) => return Run::refused(refusal, series),
+    };
+    let time = editor.time(series);
+    let outcome = series.check.then(|| {
+        let edits = editor.result();
+        Outcome {
+            checksum: edits.checksum,
+            elements: edits.elements,
+            refused: edits.refused_hash,
+        }
+    });
+    let scale = polygons.face_count() as f64 / input.face_count().max(1) as f64;
+    Run::done(time.scaled(scale), outcome)
+}
+
+/// Returns the counts of the mesh after `pass`.
+pub(crate) fn counts_after(
+    pass: EditPass,
+    backend: &Backend,
+    polygons: &PolygonMesh,
+    before: &Counts,
+) -> Counts {
+    let Some(ratio) = pass.ratio() else {
+        return *before;
+    };
+    let edits = backend.edits;
+    let counts = edits.and_then(|edits| (edits.decimated_counts)(polygons, ratio));
+    counts.unwrap_or(*before)
+}
+
+/// Returns the counts of the mesh after decimation to `ratio` of its faces; `None` if the
+/// decimation is refused.
+pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
+    polygons: &PolygonMesh,
+    ratio: f64,
+) -> Option<Counts> {
+    let mut mesh = M::from_polygons(polygons).ok()?;
+    let job = Decimation {
+        target: Target::Ratio(ratio),
+        ..Decimation::default()
+    };
+    decimate(&mut mesh, &job).ok()?;
+    Some(mesh.to_polygons().counts(mesh.edges().count()))
 }

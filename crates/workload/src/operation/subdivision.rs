@@ -1,17 +1,115 @@
-//! Runs a subdivision operation on one thread.
+//! One step of Catmull–Clark or Loop subdivision, on one thread.
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
 use std::sync::OnceLock;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sixfold::subdivision::{FaceKind, SubdivisionError};
-use sixfold::{Creases, Point, PolygonMesh, VertexId};
+use sixfold::subdivision::{FaceKind, Method, Scheme, SubdivisionError};
+use sixfold::{Creases, Point, PolygonMesh, Relation, VertexId};
+use sixfold_results::OperationGroup;
 
+use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
 use crate::backend::Backend;
-use crate::job::{Outcome, Run};
+use crate::job::{ElementSample, Outcome, Run};
 use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
+
+/// The description of one step by `scheme`, for each method.
+pub(super) const CATMULL_CLARK: [Description; 3] = [
+    describe(
+        (Scheme::CatmullClark, Method::Gather),
+        "catmull_clark_gather",
+        "Catmull–Clark; new points query neighbours",
+    ),
+    describe(
+        (Scheme::CatmullClark, Method::Scatter),
+        "catmull_clark_scatter",
+        "Catmull–Clark; one pass over the faces",
+    ),
+    describe(
+        (Scheme::CatmullClark, Method::Native),
+        "catmull_clark_native",
+        "Catmull–Clark; splits the structure's tables",
+    ),
+];
+
+pub(super) const LOOP: [Description; 3] = [
+    describe(
+        (Scheme::Loop, Method::Gather),
+        "loop_gather",
+        "Loop; new points query neighbours",
+    ),
+    describe(
+        (Scheme::Loop, Method::Scatter),
+        "loop_scatter",
+        "Loop; one pass over the faces",
+    ),
+    describe(
+        (Scheme::Loop, Method::Native),
+        "loop_native",
+        "Loop; splits the structure's tables",
+    ),
+];
+
+const fn describe(step: (Scheme, Method), name: &'static str, about: &'static str) -> Description {
+    const EDGES: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
+    const FACES: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
+    let (scheme, method) = step;
+    Description {
+        name,
+        about,
+        unit: Unit::NewFace,
+        group: OperationGroup::Subdivision,
+        visits: match (method, scheme) {
+            (Method::Scatter, _) => &[(ElementKind::Face, FACES)],
+            (_, Scheme::Loop) => &[
+                (ElementKind::Vertex, &[Relation::VertexVertices]),
+                (ElementKind::Edge, EDGES),
+                (ElementKind::Face, FACES),
+            ],
+            _ => &[
+                (
+                    ElementKind::Vertex,
+                    &[Relation::VertexVertices, Relation::VertexFaces],
+                ),
+                (ElementKind::Edge, EDGES),
+                (ElementKind::Face, FACES),
+            ],
+        },
+        checksum: Checksum::Positions,
+        noise: noise_of_corners,
+        takes_samples: false,
+        allocates: true,
+        grows_tables: matches!(method, Method::Native),
+        elements: match scheme {
+            Scheme::Loop => |polygons| polygons.face_count().saturating_mul(4),
+            _ => PolygonMesh::corner_count,
+        },
+        subdivision: Some(step),
+        ..Description::QUERIES
+    }
+}
+
+/// Subdivides all faces, or a patch if there is a sample.
+pub(crate) fn run(
+    backend: &Backend,
+    job: SubdivisionJob,
+    polygons: &PolygonMesh,
+    sample: Option<ElementSample>,
+    series: &Series<'_>,
+) -> Run {
+    let Some(ElementSample { size, .. }) = sample else {
+        return subdivide(backend, job, polygons, series);
+    };
+    let patch = patch(polygons, size);
+    let scale = polygons.face_count() as f64 / patch.face_count() as f64;
+    let run = subdivide(backend, job, &patch, series);
+    Run {
+        time: run.time.scaled(scale),
+        ..run
+    }
+}
 
 /// Returns the pool of the one thread that runs all subdivisions. The processor time of this thread
 /// is the time of all the work. All structures share the heap of this thread.
@@ -28,7 +126,7 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
 ///
 /// Set-up is not timed. In native subdivisions, the untimed runs make the tables that later runs
 /// reuse. The other methods build their structures within the timing.
-pub(crate) fn subdivide(
+fn subdivide(
     backend: &Backend,
     job: SubdivisionJob,
     polygons: &PolygonMesh,

@@ -1,0 +1,55 @@
+//! Queries all nine relations: three at every vertex, three at every edge, three at every face.
+
+use sixfold::{MeshQuery, Relation};
+
+use super::{Description, ElementKind, Unit};
+use crate::sweeps::{Elements, Outputs, SweepResult, sweep as fold};
+
+pub(super) const DESCRIPTION: Description = Description {
+    name: "all_queries",
+    about: "all nine relations",
+    unit: Unit::Visit,
+    visits: &[(ElementKind::Vertex, &[Relation::VertexVertices, Relation::VertexEdges, Relation::VertexFaces]), (ElementKind::Edge, &[Relation::EdgeVertices, Relation::EdgeEdges, Relation::EdgeFaces]), (ElementKind::Face, &[Relation::FaceVertices, Relation::FaceEdges, Relation::FaceFaces])],
+    ..Description::QUERIES
+};
+
+#[inline]
+pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
+    kind: ElementKind,
+    mesh: &M,
+    elements: &E,
+    _: &mut Outputs<M>,
+) -> SweepResult {
+    match kind {
+        ElementKind::Vertex => query_vertices(mesh, elements),
+        ElementKind::Edge => query_edges(mesh, elements),
+        ElementKind::Face => query_faces(mesh, elements),
+    }
+}
+
+#[inline(never)]
+fn query_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
+    fold(elements.vertices(mesh), |sink, v| {
+        let sink = sink.with(mesh.vertex_vertices(v));
+        let sink = sink.with(mesh.vertex_edges(v));
+        sink.with(mesh.vertex_faces(v))
+    })
+}
+
+#[inline(never)]
+fn query_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
+    fold(elements.edges(mesh), |sink, e| {
+        let sink = sink.with(mesh.edge_vertices(e));
+        let sink = sink.with(mesh.edge_edges(e));
+        sink.with(mesh.edge_faces(e))
+    })
+}
+
+#[inline(never)]
+fn query_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
+    fold(elements.faces(mesh), |sink, f| {
+        let sink = sink.with(mesh.face_vertices(f));
+        let sink = sink.with(mesh.face_edges(f));
+        sink.with(mesh.face_faces(f))
+    })
+}

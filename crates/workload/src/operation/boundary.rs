@@ -1,0 +1,37 @@
+//! Counts the edges with one face.
+
+use sixfold::{MeshQuery, Relation};
+
+use super::{Description, ElementKind, Unit};
+use crate::sweeps::{Elements, Outputs, SweepResult};
+
+pub(super) const DESCRIPTION: Description = Description {
+    name: "boundary",
+    about: "counts the edges with one face",
+    unit: Unit::Element(ElementKind::Edge),
+    visits: &[(ElementKind::Edge, &[Relation::EdgeFaces])],
+    ..Description::TRAVERSAL
+};
+
+#[inline]
+pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
+    _: ElementKind,
+    mesh: &M,
+    elements: &E,
+    _: &mut Outputs<M>,
+) -> SweepResult {
+    boundary_edges(mesh, elements)
+}
+
+#[inline(never)]
+fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
+    let (edges, boundary) = elements.edges(mesh).fold((0, 0), |(edges, boundary), e| {
+        let is_boundary = mesh.edge_faces(e).count() == 1;
+        (edges + 1, boundary + u64::from(is_boundary))
+    });
+    SweepResult {
+        elements: edges,
+        count: boundary,
+        sum: 0.0,
+    }
+}

@@ -1,0 +1,33 @@
+//! Builds the structure from a polygon mesh.
+
+use std::hint::black_box;
+
+use sixfold::{PolygonMesh, Representation};
+use sixfold_results::OperationGroup;
+
+use super::{Description, ElementKind, Unit};
+use crate::job::{Outcome, Run};
+use crate::series::{Series, time_making};
+
+pub(super) const DESCRIPTION: Description = Description {
+    name: "build",
+    about: "builds the structure from a polygon mesh",
+    unit: Unit::Element(ElementKind::Face),
+    group: OperationGroup::Build,
+    takes_samples: false,
+    pauses_clock: true,
+    allocates: true,
+    ..Description::QUERIES
+};
+
+/// Builds the structure of `mesh` again.
+pub(crate) fn run<M: Representation>(mesh: &M, polygons: &PolygonMesh, series: &Series<'_>) -> Run {
+    let build = || M::from_polygons(black_box(polygons)).ok();
+    let (time, built) = time_making(series, mesh.memory().total(), build);
+    let outcome = built.flatten().map(|mesh| Outcome {
+        checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
+        elements: mesh.face_count() as u64,
+        refused: 0,
+    });
+    Run::done(time, outcome)
+}

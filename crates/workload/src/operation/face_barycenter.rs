@@ -1,0 +1,42 @@
+//! Stores for each face the mean of its vertex positions.
+
+use sixfold::{FaceMap, MeshQuery, Point, Relation};
+
+use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
+use crate::sweeps::{Elements, Outputs, SweepResult, count_each};
+
+pub(super) const DESCRIPTION: Description = Description {
+    name: "face_barycenter",
+    about: "stores the mean of the corners of each face",
+    unit: Unit::Element(ElementKind::Face),
+    visits: &[(ElementKind::Face, &[Relation::FaceVertices])],
+    checksum: Checksum::FaceValues,
+    noise: noise_of_corners,
+    ..Description::TRAVERSAL
+};
+
+#[inline]
+pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
+    _: ElementKind,
+    mesh: &M,
+    elements: &E,
+    outputs: &mut Outputs<M>,
+) -> SweepResult {
+    face_barycenters(mesh, elements, &mut outputs.faces)
+}
+
+#[inline(never)]
+fn face_barycenters<M: MeshQuery, E: Elements<M>>(
+    mesh: &M,
+    elements: &E,
+    barycenters: &mut FaceMap<M, Point>,
+) -> SweepResult {
+    count_each(elements.faces(mesh), |f| {
+        let (mut sum, mut corners) = (Point::ZERO, 0_u32);
+        mesh.face_vertices(f).for_each(|v| {
+            sum += mesh.position(v);
+            corners += 1;
+        });
+        barycenters[f] = sum * (1.0 / corners as f32);
+    })
+}
