@@ -92,11 +92,11 @@ impl SharpLevel {
     /// Places the points at sharp elements, and returns the creases of the next level.
     ///
     /// `points` contains the vertex points, and from `first_edge` the edge points, all placed as if
-    /// nothing were sharp. `old` returns the old position of a vertex. O(s log s) for s sharp
+    /// nothing were sharp. `old` has the old position of each vertex. O(s log s) for s sharp
     /// elements.
     pub(crate) fn place(
         &self,
-        old: impl Fn(u32) -> Point,
+        old: &[Point],
         points: &mut [Point],
         first_edge: usize,
         creasing: Creasing,
@@ -106,9 +106,9 @@ impl SharpLevel {
         for spoke in &spokes {
             children[spoke.edge.0][spoke.edge.1] = spoke.child;
         }
-        self.place_edges(&children, &old, points, first_edge);
+        self.place_edges(&children, old, points, first_edge);
         spokes.sort_unstable_by_key(|spoke| (spoke.at, spoke.edge));
-        let corners = self.place_vertices(&spokes, &old, points);
+        let corners = self.place_vertices(&spokes, old, points);
         Creases::from_entries(self.halves(&children, first_edge), corners)
     }
 
@@ -139,12 +139,12 @@ impl SharpLevel {
     fn place_edges(
         &self,
         children: &[[f32; 2]],
-        old: &impl Fn(u32) -> Point,
+        old: &[Point],
         points: &mut [Point],
         first_edge: usize,
     ) {
         for (edge, children) in self.edges.iter().zip(children) {
-            let sharp = midpoint(edge.ends.map(old));
+            let sharp = midpoint(edge.ends.map(|v| old[v as usize]));
             let point = &mut points[first_edge + edge.edge];
             let stays = children.iter().all(|&child| child > 0.0);
             *point = if stays || edge.sharpness >= 1.0 {
@@ -160,7 +160,7 @@ impl SharpLevel {
     fn place_vertices(
         &self,
         spokes: &[Spoke],
-        old: &impl Fn(u32) -> Point,
+        old: &[Point],
         points: &mut [Point],
     ) -> Vec<(VertexId, f32)> {
         let mut own = self.corners.iter().copied().peekable();
@@ -224,21 +224,15 @@ fn apply_chaikin(around: &mut [Spoke]) {
 }
 
 /// Returns the new position of vertex `v` with the sharpness `own` and the sharp edges `around`.
-fn new_position(
-    v: u32,
-    own: f32,
-    around: &[Spoke],
-    old: &impl Fn(u32) -> Point,
-    smooth: Point,
-) -> Point {
+fn new_position(v: u32, own: f32, around: &[Spoke], old: &[Point], smooth: Point) -> Point {
     let still_sharp = || around.iter().filter(|spoke| spoke.child > 0.0);
     let current = Rule::new(own, around.len());
     let next = Rule::new(next_sharpness(own), still_sharp().count());
     let at = |rule: Rule, ends: &mut dyn Iterator<Item = &Spoke>| match rule {
-        Rule::Corner => old(v),
+        Rule::Corner => old[v as usize],
         Rule::Crease => {
-            let ends: Point = ends.map(|spoke| old(spoke.far)).sum();
-            ends * 0.125 + old(v) * 0.75
+            let ends: Point = ends.map(|spoke| old[spoke.far as usize]).sum();
+            ends * 0.125 + old[v as usize] * 0.75
         }
         Rule::Smooth => smooth,
     };

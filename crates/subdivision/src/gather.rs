@@ -56,11 +56,11 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     mesh.edges().for_each(|e| {
         let edge = builder.points.len() - first_edge;
         edge_points[e] = builder.points.len() as u32;
-        let ends = mesh.edge_vertices(e);
+        let [a, b] = mesh.edge_vertices(e);
         let (point, faces) = edge_point(mesh, mask, e, |f| values[f]);
         builder.points.push(point);
         let by_topology = faces != 2;
-        let ends = ends.map(|v| numbers[v]);
+        let ends = [numbers[a], numbers[b]];
         let sharpness = crease_vertices.sharpness(creases, ends, by_topology);
         if K::APPROXIMATES && sharpness > 0.0 {
             level.edges.push(SharpEdge {
@@ -76,14 +76,13 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         return builder.finish(Creases::default());
     }
     let old = positions_by_number(mesh);
-    let creases = level.place(old, &mut builder.points, first_edge, creasing);
+    let creases = level.place(&old, &mut builder.points, first_edge, creasing);
     builder.finish(creases)
 }
 
-/// Returns a function from the number of a vertex to its position.
-pub(crate) fn positions_by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
-    let positions: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
-    move |v| positions[v as usize]
+/// Returns the positions of all vertices, in the order of the structure.
+pub(crate) fn positions_by_number<M: MeshQuery>(mesh: &M) -> Vec<Point> {
+    mesh.vertices().map(|v| mesh.position(v)).collect()
 }
 
 #[inline(always)]
@@ -123,7 +122,9 @@ pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     e: M::Edge,
     face_value: impl Fn(M::Face) -> Point,
 ) -> (Point, usize) {
-    let ends = mesh.edge_vertices(e).map(|v| mesh.position(v));
+    // Not `map`: it is compiled to eight functions for each structure and mask.
+    let [a, b] = mesh.edge_vertices(e);
+    let ends = [mesh.position(a), mesh.position(b)];
     let (mut sum, mut faces) = (Point::ZERO, 0);
     mesh.edge_faces(e).for_each(|f| {
         if K::EDGES_USE_FACES {

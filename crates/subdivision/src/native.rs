@@ -52,9 +52,10 @@ pub(crate) fn step<M: Refine, K: Mask>(
             let faces;
             (*point, faces) = edge_point(mesh, mask, e, value);
             if K::APPROXIMATES && faces != 2 {
+                let [a, b] = mesh.edge_vertices(e);
                 by_topology.push(SharpEdge {
                     edge: number,
-                    ends: mesh.edge_vertices(e).map(|v| v.index() as u32),
+                    ends: [a.index() as u32, b.index() as u32],
                     sharpness: f32::INFINITY,
                     by_topology: true,
                 });
@@ -72,7 +73,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     if level.is_empty() {
         return Ok(Creases::default());
     }
-    let old = |v: u32| mesh.position_rows()[v as usize];
+    let old = mesh.position_rows();
     Ok(level.place(old, child.positions_mut(), first_edge, creasing))
 }
 

@@ -71,7 +71,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
         return builder.finish(Creases::default());
     }
     let old = positions_by_number(mesh);
-    let creases = level.place(old, &mut builder.points, first_edge, creasing);
+    let creases = level.place(&old, &mut builder.points, first_edge, creasing);
     builder.finish(creases)
 }
 

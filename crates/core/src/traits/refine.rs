@@ -168,14 +168,21 @@ pub fn rows_of_chunk(rows: usize, chunk: usize) -> Range<u32> {
 pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     #[cfg(feature = "rayon")]
     if rows.len() > len && rayon::current_num_threads() > 1 {
-        let chunks = rows.chunks_mut(len).enumerate();
-        let chunks = chunks.map(|(number, rows)| (number * len, rows)).collect();
-        on_threads(chunks, &|(first, rows)| work(first, rows));
+        on_threads(numbered_chunks(rows, len), &|(first, rows)| {
+            work(first, rows)
+        });
         return;
     }
     for (number, rows) in rows.chunks_mut(len).enumerate() {
         work(number * len, rows);
     }
+}
+
+/// Returns the chunks of `rows` with the numbers of their first rows.
+#[cfg(feature = "rayon")]
+fn numbered_chunks<T>(rows: &mut [T], len: usize) -> Vec<(usize, &mut [T])> {
+    let chunks = rows.chunks_mut(len).enumerate();
+    chunks.map(|(number, rows)| (number * len, rows)).collect()
 }
 
 /// Calls `work` for every chunk on the threads of the current rayon pool, and returns the results in
@@ -200,6 +207,15 @@ pub fn map_chunks<T: Send, R: Send>(
     starts: &[usize],
     work: impl Fn(usize, Range<usize>, &mut [T]) -> R + Sync,
 ) -> Vec<R> {
+    in_order(split_at_starts(rows, starts), &|(number, range, rows)| {
+        work(number, range, rows)
+    })
+}
+
+/// A chunk with its number and the range of its rows.
+type Chunk<'r, T> = (usize, Range<usize>, &'r mut [T]);
+
+fn split_at_starts<'r, T>(rows: &'r mut [T], starts: &[usize]) -> Vec<Chunk<'r, T>> {
     let mut chunks = Vec::with_capacity(starts.len());
     let mut rest = rows;
     for (number, bounds) in starts.windows(2).enumerate() {
@@ -212,10 +228,14 @@ pub fn map_chunks<T: Send, R: Send>(
         "the chunks do not cover the last {} rows",
         rest.len()
     );
-    let work = |(number, range, rows)| work(number, range, rows);
+    chunks
+}
+
+/// Calls `work` for every chunk, on threads if there are several, and returns the results in order.
+fn in_order<C: Send, R: Send>(chunks: Vec<C>, work: &(dyn Fn(C) -> R + Sync)) -> Vec<R> {
     #[cfg(feature = "rayon")]
     if chunks.len() > 1 && rayon::current_num_threads() > 1 {
-        return on_threads(chunks, &work);
+        return on_threads(chunks, work);
     }
     chunks.into_iter().map(work).collect()
 }
