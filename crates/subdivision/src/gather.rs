@@ -122,7 +122,7 @@ pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     e: M::Edge,
     face_value: impl Fn(M::Face) -> Point,
 ) -> (Point, usize) {
-    // Not `map`: it is compiled to eight functions for each structure and mask.
+    // Not `map`: it is compiled to several functions for each structure and mask.
     let [a, b] = mesh.edge_vertices(e);
     let ends = [mesh.position(a), mesh.position(b)];
     let (mut sum, mut faces) = (Point::ZERO, 0);

@@ -319,11 +319,7 @@ impl Operation {
 
     /// Returns the subdivision job; `None` if the operation is not a subdivision.
     pub fn subdivision_job(self) -> Option<SubdivisionJob> {
-        let (scheme, method) = match self {
-            Self::CatmullClark(method) => (Scheme::CatmullClark, method),
-            Self::Loop(method) => (Scheme::Loop, method),
-            _ => return None,
-        };
+        let (scheme, method) = self.description().subdivision?;
         let way = match method {
             Method::Gather => Way::Gather,
             Method::Scatter => Way::Scatter,
@@ -469,6 +465,36 @@ mod tests {
             error.contains("vv_smoth") && error.contains("vv_smooth"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn descriptions_are_in_the_order_of_what_they_describe() {
+        for relation in Relation::ALL {
+            let operation = Operation::Relation(relation);
+            assert_eq!(operation.name(), relation.name());
+            let kind = ElementKind::queried_by(relation);
+            assert_eq!(operation.relations(kind), [relation]);
+        }
+        for pass in EditPass::ALL {
+            assert_eq!(Operation::EditPass(pass).name(), pass.name());
+        }
+        for method in Method::ALL {
+            let steps = [
+                (Operation::CatmullClark(method), Scheme::CatmullClark),
+                (Operation::Loop(method), Scheme::Loop),
+            ];
+            for (operation, scheme) in steps {
+                let name = format!("{}_{method}", scheme.name().replace('-', "_"));
+                assert_eq!(operation.name(), name);
+                assert_eq!(operation.scheme(), Some(scheme));
+                let job = operation.subdivision_job().expect("a subdivision");
+                assert_eq!(job.way.method(), method);
+                let of_mask = operation.relations(ElementKind::Vertex);
+                let queries_faces = of_mask.contains(&Relation::VertexFaces);
+                let gathers = method != Method::Scatter;
+                assert_eq!(queries_faces, gathers && scheme == Scheme::CatmullClark);
+            }
+        }
     }
 
     #[test]

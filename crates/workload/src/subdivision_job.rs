@@ -2,9 +2,10 @@
 
 use sixfold::algorithms::{Algorithms, AnyMesh, NativeLevels};
 use sixfold::subdivision::{Method, Scheme, Step, Subdivision, SubdivisionError};
-use sixfold::{Creases, Point, PolygonMesh};
+use sixfold::{Creases, PolygonMesh};
 
 use crate::backend::Backend;
+use crate::sweeps::field_sum;
 
 sixfold_core::named! {
     /// A way to compute and store the levels of a subdivision.
@@ -160,7 +161,10 @@ impl Refiner for Rebuilt {
 
     fn result(&self) -> (usize, f64) {
         let polygons = &self.last.polygons;
-        (polygons.face_count(), checksum(polygons.positions()))
+        (
+            polygons.face_count(),
+            field_sum(polygons.positions().iter().copied()),
+        )
     }
 }
 
@@ -178,14 +182,9 @@ impl Refiner for InPlace {
     }
 
     fn result(&self) -> (usize, f64) {
-        (self.levels.face_count(), checksum(self.levels.positions()))
+        (
+            self.levels.face_count(),
+            field_sum(self.levels.positions().iter().copied()),
+        )
     }
-}
-
-fn checksum(points: &[Point]) -> f64 {
-    let each = points.iter().map(|p| {
-        let [x, y, z] = p.to_array().map(|x| f64::from(x).abs());
-        x + 2.0 * y + 3.0 * z
-    });
-    each.sum()
 }

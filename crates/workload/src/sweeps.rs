@@ -153,8 +153,9 @@ impl Sink {
     }
 }
 
+/// Passes the sink through `query` at each element, and counts the elements.
 #[inline(always)]
-pub(crate) fn sweep<I: Iterator>(
+pub(crate) fn query_each<I: Iterator>(
     elements: I,
     query: impl Fn(Sink, I::Item) -> Sink,
 ) -> SweepResult {

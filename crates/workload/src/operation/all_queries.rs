@@ -3,7 +3,7 @@
 use sixfold::{MeshQuery, Relation};
 
 use super::{Description, ElementKind, Unit};
-use crate::sweeps::{Elements, Outputs, SweepResult, sweep as fold};
+use crate::sweeps::{Elements, Outputs, SweepResult, query_each};
 
 pub(super) const DESCRIPTION: Description = Description {
     name: "all_queries",
@@ -29,7 +29,7 @@ pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
 
 #[inline(never)]
 fn query_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    fold(elements.vertices(mesh), |sink, v| {
+    query_each(elements.vertices(mesh), |sink, v| {
         let sink = sink.with(mesh.vertex_vertices(v));
         let sink = sink.with(mesh.vertex_edges(v));
         sink.with(mesh.vertex_faces(v))
@@ -38,7 +38,7 @@ fn query_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Sweep
 
 #[inline(never)]
 fn query_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    fold(elements.edges(mesh), |sink, e| {
+    query_each(elements.edges(mesh), |sink, e| {
         let sink = sink.with(mesh.edge_vertices(e));
         let sink = sink.with(mesh.edge_edges(e));
         sink.with(mesh.edge_faces(e))
@@ -47,7 +47,7 @@ fn query_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepRes
 
 #[inline(never)]
 fn query_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-    fold(elements.faces(mesh), |sink, f| {
+    query_each(elements.faces(mesh), |sink, f| {
         let sink = sink.with(mesh.face_vertices(f));
         let sink = sink.with(mesh.face_edges(f));
         sink.with(mesh.face_faces(f))

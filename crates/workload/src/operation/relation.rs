@@ -3,7 +3,7 @@
 use sixfold::{MeshQuery, Relation};
 
 use super::{Description, ElementKind, Unit, Visits};
-use crate::sweeps::{Elements, SweepResult, sweep};
+use crate::sweeps::{Elements, SweepResult, query_each};
 
 /// The description of each relation, in the order of [`Relation::ALL`].
 pub(super) const DESCRIPTIONS: [Description; 9] = [
@@ -80,7 +80,7 @@ pub(super) fn query<M: MeshQuery, E: Elements<M>>(
         ($query:ident $list:ident $from:ident $to:ident) => {{
             #[inline(never)]
             fn $query<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-                sweep(elements.$list(mesh), |sink, element| {
+                query_each(elements.$list(mesh), |sink, element| {
                     sink.with(mesh.$query(element))
                 })
             }
