@@ -55,7 +55,7 @@ impl<M: MeshQuery> RouteHandles<M> {
         let (v, e, f) = (&self.vertices, &self.edges, &self.faces);
         match action {
             Action::Relation(relation) => {
-                // Each loop is a function of its own, as in `sweeps::query_relation`.
+                // Each loop is a function of its own, as in `operation::relation::query`.
                 macro_rules! run_relation {
                     ($query:ident $list:ident $from:ident $to:ident) => {{
                         #[inline(never)]
