@@ -2,6 +2,7 @@
 //! judged.
 
 pub(crate) mod agreement;
+pub(crate) mod bench;
 pub(crate) mod control;
 #[cfg(test)]
 mod cost;
@@ -12,9 +13,9 @@ pub(crate) mod machine;
 pub(crate) mod measure;
 pub(crate) mod plan;
 pub(crate) mod plan_by_count;
+pub(crate) mod rows;
 pub(crate) mod run;
 #[cfg(test)]
 pub(crate) mod simulated_machine;
 pub(crate) mod timer;
-pub(crate) mod trial;
 pub(crate) mod warnings;

@@ -6,6 +6,5 @@ pub(crate) mod memory;
 pub(crate) mod neighbours;
 pub(crate) mod orders;
 pub(crate) mod pick;
-pub(crate) mod rows;
 pub(crate) mod study;
 pub(crate) mod why;

@@ -36,6 +36,7 @@ pub(crate) fn compare_checksums(
         };
         let others = entries.iter().filter(|other| {
             same_work(other.job.task, entry.job.task)
+                && same_input(other, entry)
                 && other.subject != entry.subject
                 && other.outcome.is_some()
                 && is_reference(subjects, other.subject)
@@ -103,6 +104,12 @@ pub(crate) fn compare_checksums(
 fn same_work(a: Task, b: Task) -> bool {
     let scheme = |task: Task| task.operation().and_then(Operation::scheme);
     a == b || (scheme(a).is_some() && scheme(a) == scheme(b))
+}
+
+/// Returns whether two entries with the same task have the same input. The result of some operations
+/// depends on the case: the order of the elements.
+fn same_input(a: &Entry, b: &Entry) -> bool {
+    a.case == b.case || !a.operation().is_some_and(Operation::depends_on_order)
 }
 
 /// Returns the sample size of `job`. A full run has the size `usize::MAX`.

@@ -4,7 +4,6 @@ use crate::engine::measure::Entry;
 use sixfold_results::ranking::ratio;
 use sixfold_results::statistics::Median;
 use sixfold_results::{Control, ControlRow};
-use sixfold_workload::Operation;
 
 /// Compares the two columns of `backend`: the subjects `first` and `second`.
 pub(crate) fn control(
@@ -13,16 +12,10 @@ pub(crate) fn control(
     second: usize,
     backend: &str,
 ) -> Option<Control> {
-    let find = |subject: usize, operation: Operation| {
-        let same = |e: &&Entry| e.subject == subject && e.operation() == Some(operation);
-        entries.iter().find(same)
-    };
     let mut operations = Vec::new();
     for again in entries.iter().filter(|e| e.subject == second) {
-        let Some(operation) = again.operation() else {
-            continue;
-        };
-        let Some(once) = find(first, operation) else {
+        let same = |e: &&Entry| e.subject == first && e.job.task == again.job.task;
+        let Some(once) = entries.iter().find(same) else {
             continue;
         };
         // A coarse clock may measure zero, which has no ratio.
@@ -30,7 +23,7 @@ pub(crate) fn control(
         let known = |ratio: &Median| ratio.value.is_finite() && ratio.value > 0.0;
         if let Some(ratio) = ratio.filter(known) {
             operations.push(ControlRow {
-                operation: operation.name().into(),
+                operation: again.name.into(),
                 ratio: ratio.value,
                 ci_low: ratio.interval.map(|[low, _]| low),
                 ci_high: ratio.interval.map(|[_, high]| high),

@@ -6,11 +6,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use sixfold::{Facts, QueryCost, shapes};
-use sixfold_results::{CacheState, Policy};
+use sixfold_results::RunSettings;
 use sixfold_workload::{Backend, Clock, Job, MachineClock, Operation, Run, Series, TimedBackend};
 
-use crate::engine::heap::Memory;
-use crate::engine::trial::{Columns, Trial};
+use crate::engine::bench::{Bench, Columns, Trial};
+use crate::engine::effort::{Budget, Effort};
 
 /// The times of all backends of a trial, in nanoseconds of processor time of this thread. Elapsed
 /// time would include the time of other programs.
@@ -88,24 +88,26 @@ fn engine_cost() {
         }) as Box<dyn TimedBackend + '_>
     };
     let names = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
-    let mut columns = Columns::new(names.map(build).into(), Vec::new(), |first| {
+    let columns = Columns::new(names.map(build).into(), Vec::new(), |first| {
         Some(build(names[first]))
     });
-    let entries = columns.entries(&Operation::ALL);
     let stop = AtomicBool::new(false);
-    let mut trial = Trial {
+    let effort = Effort::Budget(Duration::from_secs(20));
+    let trial = Trial {
+        polygons: &polygons,
         counts,
         skewed: false,
-        machine: &clock,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
-        effort: Duration::from_secs(20).into(),
+        entries: columns.entries(&Operation::ALL),
+        columns,
+        effort,
         named: false,
         seed: 1,
-        stop: &stop,
-        progress: &mut |_| (),
     };
+    let budget = Budget::start(effort, &clock);
+    let mut bench =
+        Bench::start(&clock, budget, RunSettings::default(), 0, &stop).expect("the same policy");
     let start = clock.now();
-    let measured = trial.run(&mut columns, entries);
+    let measured = bench.measure(trial, &mut |_| ());
     let total = (clock.now() - start).ns();
     assert!(measured.entries.iter().any(|entry| entry.outcome.is_some()));
     let own = total - spent.in_backends.get();

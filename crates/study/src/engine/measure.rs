@@ -13,7 +13,7 @@
 
 use std::hint::black_box;
 use std::num::NonZeroU32;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
@@ -21,13 +21,15 @@ use rand::seq::SliceRandom;
 
 use crate::engine::disturbance::{DisturbanceDetector, Verdict};
 use crate::engine::effort::Effort;
-use crate::engine::trial::Trial;
+use crate::engine::heap::Memory;
+use crate::engine::machine::Machine;
+use sixfold_core::Counts;
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::statistics::{Median, undisturbed};
 use sixfold_results::{RefusalKind, Samples, Time};
 use sixfold_workload::Operation;
 use sixfold_workload::{
-    Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
+    Clock, Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
 };
 
 /// Maximum number of rounds.
@@ -57,8 +59,12 @@ const LARGE_WARM_UP_NS: f64 = 20_000_000.0;
 pub(crate) struct Entry {
     pub(crate) subject: usize,
     pub(crate) job: Job,
-    /// The name of the task, for display.
+    /// The name of the task.
     pub(crate) name: &'static str,
+    /// The kind of the elements that the task visits.
+    pub(crate) per: &'static str,
+    /// The case in which the backend is measured, such as an order of the mesh; empty without cases.
+    pub(crate) case: &'static str,
     /// Whether a run of a task of a mix scans all faces. Operations are planned by the costs of
     /// their relations instead.
     pub(crate) scans: bool,
@@ -107,7 +113,7 @@ impl Entry {
         }
         let times = || self.samples.iter().map(|(_, time)| time);
         Some(Samples {
-            case: String::new(),
+            case: self.case.to_owned(),
             backend: backend.to_owned(),
             operation: self.name.to_owned(),
             control,
@@ -128,6 +134,7 @@ impl Entry {
     pub(crate) fn new(subject: usize, operation: Operation) -> Self {
         Self {
             pauses_clock: operation.pauses_clock(),
+            per: operation.unit(),
             ..Self::of_task(subject, Task::Operation(operation), operation.name())
         }
     }
@@ -138,6 +145,8 @@ impl Entry {
             subject,
             job: Job::new(task),
             name,
+            per: "",
+            case: "",
             scans: false,
             pauses_clock: false,
             least_every: 1,
@@ -243,40 +252,39 @@ pub struct Progress<'a> {
     pub backend: &'a str,
 }
 
-/// Returns an entry for each of `operations` on each of `subjects` subjects.
-pub(crate) fn entries_of(subjects: usize, operations: &[Operation]) -> Vec<Entry> {
-    let of_operation = |&operation| (0..subjects).map(move |s| Entry::new(s, operation));
-    operations.iter().flat_map(of_operation).collect()
-}
-
-/// A trial that runs: the trial, its subjects, and the random numbers.
-pub(crate) struct Measurement<'m, 't, 's> {
-    pub(crate) trial: &'m mut Trial<'t>,
+/// A trial that is measured now, on its bench.
+pub(crate) struct Measurement<'m, 's> {
+    pub(crate) machine: &'m dyn Machine,
+    pub(crate) memory: &'m mut Memory,
+    pub(crate) stop: &'m AtomicBool,
+    pub(crate) progress: &'m mut dyn FnMut(Progress<'_>),
+    pub(crate) counts: Counts,
+    pub(crate) skewed: bool,
+    pub(crate) effort: Effort,
+    pub(crate) named: bool,
+    pub(crate) random: ChaCha8Rng,
     pub(crate) subjects: &'m mut [Box<dyn TimedBackend + 's>],
     /// Index of the second copy of the backend that is measured twice.
     pub(crate) control: Option<usize>,
-    pub(crate) random: ChaCha8Rng,
 }
 
-impl Measurement<'_, '_, '_> {
+impl<'m> Measurement<'m, '_> {
     /// Measures `entries`; those of the same task must be adjacent. Returns early, with the
     /// finished part, if `stop` is set.
     pub(crate) fn measure(&mut self, mut entries: Vec<Entry>) -> Vec<Entry> {
-        let start = self.trial.clock().now().wall_ns;
-        let limit_ns = self.trial.effort.limit_ns();
+        let start = self.clock().now().wall_ns;
+        let limit_ns = self.effort.limit_ns();
         let deadline = start + limit_ns;
         // Reserve for the warm-up: its runs may be the only ones that fit the budget.
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
-        self.trial
-            .memory
-            .reserve_for(2 * largest.unwrap_or(0) as u64);
-        match self.trial.effort {
+        self.memory.reserve_for(2 * largest.unwrap_or(0) as u64);
+        match self.effort {
             Effort::Budget(_) => self.warm_up(&mut entries, deadline),
             Effort::Rounds(_) => self.plan_by_count(&mut entries),
         }
-        self.trial.memory.reserve();
+        self.memory.reserve();
         let allocates = entries.iter().any(|entry| entry.job.task.allocates());
-        let memory = &self.trial.memory;
+        let memory = &self.memory;
         let fresh_pages = memory.can_release_pages() && !memory.is_cold();
         let first_times = allocates && fresh_pages;
         let for_rounds = match first_times {
@@ -292,8 +300,24 @@ impl Measurement<'_, '_, '_> {
         entries
     }
 
+    /// Returns the clock of all times.
+    pub(crate) fn clock(&self) -> &'m dyn Clock {
+        self.machine.clock()
+    }
+
+    /// Returns the numbers of vertices, edges and faces.
+    pub(crate) fn population(&self) -> [usize; 3] {
+        let Counts {
+            vertices,
+            edges,
+            faces,
+            ..
+        } = self.counts;
+        [vertices, edges, faces]
+    }
+
     pub(crate) fn stopped(&self) -> bool {
-        self.trial.stop.load(Ordering::Relaxed)
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// Runs `job` `untimed` times without the clock, then `runs` times with the clock.
@@ -307,9 +331,9 @@ impl Measurement<'_, '_, '_> {
         let series = Series {
             untimed,
             runs,
-            start: self.trial.memory.start_of_runs(),
+            start: self.memory.start_of_runs(),
             check,
-            clock: self.trial.clock(),
+            clock: self.clock(),
         };
         self.subjects[subject].run(job, &series)
     }
@@ -319,23 +343,23 @@ impl Measurement<'_, '_, '_> {
     /// them, and takes a sample again only because of page faults.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
-        let fixed = self.trial.effort.rounds();
+        let fixed = self.effort.rounds();
         let rounds = fixed.map_or(MAX_ROUNDS, NonZeroU32::get);
-        let work = self.trial.machine.reference_work();
+        let work = self.machine.reference_work();
         let mut detector = match fixed {
-            None => DisturbanceDetector::new(self.trial.effort.limit_ns(), work),
+            None => DisturbanceDetector::new(self.effort.limit_ns(), work),
             Some(_) => DisturbanceDetector::without_waiting(work),
         };
         // First estimate: building and touching a structure takes 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
-        let full_rounds = full_rounds(entries, deadline - self.trial.clock().now().wall_ns);
+        let full_rounds = full_rounds(entries, deadline - self.clock().now().wall_ns);
         for round in 0..rounds {
-            self.trial.memory.check_free_memory();
+            self.memory.check_free_memory();
             let takes_part = |entry: &Entry| takes_part(entry, round, full_rounds);
             let costs = entries.iter().filter(|e| takes_part(e));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
-            let now = self.trial.clock().now().wall_ns;
+            let now = self.clock().now().wall_ns;
             let over = now >= deadline || (round > 0 && now + cost > deadline);
             if over || self.stopped() || !entries.iter().any(can_take_part) {
                 return;
@@ -347,7 +371,7 @@ impl Measurement<'_, '_, '_> {
             };
             if round > 0 && in_time && affordable && self.has_room_to_rebuild() {
                 self.rebuild();
-                rebuild_ns = self.trial.clock().now().wall_ns - now;
+                rebuild_ns = self.clock().now().wall_ns - now;
                 rebuilding_ns += rebuild_ns;
             }
             groups.shuffle(&mut self.random);
@@ -365,7 +389,7 @@ impl Measurement<'_, '_, '_> {
                     if self.stopped() {
                         return;
                     }
-                    let now = self.trial.clock().now().wall_ns;
+                    let now = self.clock().now().wall_ns;
                     if now + entry.cost_ns > deadline {
                         continue; // a shorter one may still fit
                     }
@@ -380,9 +404,7 @@ impl Measurement<'_, '_, '_> {
 
     fn has_room_to_rebuild(&self) -> bool {
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
-        self.trial
-            .memory
-            .has_room_for(2 * largest.unwrap_or(0) as u64)
+        self.memory.has_room_for(2 * largest.unwrap_or(0) as u64)
     }
 
     /// Builds all structures again, at other addresses. If pages are kept, returns them to the
@@ -394,22 +416,22 @@ impl Measurement<'_, '_, '_> {
             if self.stopped() {
                 return;
             }
-            self.trial.memory.release_pages();
+            self.memory.release_pages();
             let bytes = self.subjects[subject].bytes();
             if exceeds_second_level(bytes) {
-                self.trial.memory.reserve_in_random_order(2 * bytes as u64);
+                self.memory.reserve_in_random_order(2 * bytes as u64);
             }
             let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
             self.subjects[subject].rebuild();
             drop(black_box(gap));
         }
-        self.trial.memory.reserve();
+        self.memory.reserve();
     }
 
     /// Takes and records a sample, or records a refusal. An external program can refuse at any
     /// time.
     fn sample(&mut self, detector: &mut DisturbanceDetector<'_>, entry: &mut Entry, round: u32) {
-        let (stop, kept) = (self.trial.stop, self.trial.memory.keeps_pages());
+        let (stop, kept) = (self.stop, self.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
         // Each round continues a mix where the last round ended.
         let job = Job {
@@ -417,7 +439,7 @@ impl Measurement<'_, '_, '_> {
             ..entry.job
         };
         let taken = detector.take_sample(
-            self.trial.clock(),
+            self.clock(),
             || self.run(entry.subject, &job, runs, false),
             |run| match run.refusal.is_some() || stop.load(Ordering::Relaxed) {
                 true => Verdict::Final,
@@ -449,11 +471,11 @@ impl Measurement<'_, '_, '_> {
             .filter(|entry| entry.has_first_time() && Some(entry.subject) != control)
             .filter(|entry| !self.subjects[entry.subject].is_external())
             .collect();
-        let fixed = self.trial.effort.rounds();
+        let fixed = self.effort.rounds();
         for _ in 0..fixed.map_or(MAX_FIRST_TIMES, |rounds| rounds.get().min(MAX_FIRST_TIMES)) {
             entries.shuffle(&mut self.random);
             for entry in &mut entries {
-                let now = self.trial.clock().now().wall_ns;
+                let now = self.clock().now().wall_ns;
                 if self.stopped() {
                     return;
                 }
@@ -463,7 +485,7 @@ impl Measurement<'_, '_, '_> {
                 self.report(1.0, "first times", entry);
                 let series = Series {
                     start: Start::FreshPages,
-                    ..Series::once(self.trial.clock())
+                    ..Series::once(self.clock())
                 };
                 let first = self.subjects[entry.subject].run(&entry.job, &series);
                 let later = self.run(entry.subject, &entry.job, [1, 1], false);
@@ -475,7 +497,7 @@ impl Measurement<'_, '_, '_> {
     }
 
     pub(crate) fn report(&mut self, done: f64, stage: &str, entry: &Entry) {
-        (self.trial.progress)(Progress {
+        (self.progress)(Progress {
             done,
             stage,
             task: entry.name,
@@ -514,15 +536,6 @@ fn groups(entries: &[Entry]) -> Vec<Vec<usize>> {
     let numbers: Vec<usize> = (0..entries.len()).collect();
     let same = |&a: &usize, &b: &usize| entries[a].job.task == entries[b].job.task;
     numbers.chunk_by(same).map(<[usize]>::to_vec).collect()
-}
-
-/// Returns the corrected time of each entry. Entries of the same task must be adjacent.
-pub(crate) fn corrected_entries(entries: &[Entry]) -> Vec<Option<f64>> {
-    let tasks = entries.chunk_by(|a, b| a.job.task == b.job.task);
-    let times = tasks.map(|group| group.iter().map(Entry::times).collect::<Vec<_>>());
-    times
-        .flat_map(|times| sixfold_results::corrected_times(&times))
-        .collect()
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --bu
 /// Number of faces of the first patch on which an operation is timed.
 const FIRST_PATCH: usize = 1024;
 
-impl Measurement<'_, '_, '_> {
+impl Measurement<'_, '_> {
     /// Runs everything once and plans samples that fit the budget. Operations that do not scan come
     /// first, then operations that scan. At the end, operations without a run are run once if there
     /// is time. When the budget ends, the remaining operations are refused, unless they were
@@ -64,15 +64,15 @@ impl Measurement<'_, '_, '_> {
                     (true, true) => SCANS_PART,
                     (true, false) => 1.0 - SCANS_PART,
                 };
-                let left = (deadline - self.trial.clock().now().wall_ns).max(0.0) * part;
+                let left = (deadline - self.clock().now().wall_ns).max(0.0) * part;
                 // All backends of a task are run, or none, so that they can be compared.
-                if last_task.is_some_and(|task| task != entry.job.task) && !self.trial.named {
+                if last_task.is_some_and(|task| task != entry.job.task) && !self.named {
                     // The first pass leaves a part of the time to the second pass.
                     let reserved = match scanning {
                         true => 0.0,
-                        false => (1.0 - part) * self.trial.effort.limit_ns(),
+                        false => (1.0 - part) * self.effort.limit_ns(),
                     };
-                    over = self.trial.clock().now().wall_ns + reserved >= deadline;
+                    over = self.clock().now().wall_ns + reserved >= deadline;
                 }
                 last_task = Some(entry.job.task);
                 if over {
@@ -100,18 +100,18 @@ impl Measurement<'_, '_, '_> {
     /// Runs once each operation that was only estimated, if the run fits into the time left. The
     /// shortest operation comes first.
     fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
-        let budget = self.trial.effort.limit_ns();
+        let budget = self.effort.limit_ns();
         let mut estimated: Vec<(f64, &mut Entry)> = entries
             .iter_mut()
             .filter_map(|entry| Some((entry.estimate?.wall_ns, entry)))
             .collect();
         estimated.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         for (wall_ns, entry) in estimated {
-            let left = deadline - self.trial.clock().now().wall_ns;
+            let left = deadline - self.clock().now().wall_ns;
             if self.stopped() {
                 return;
             }
-            let part = match (entry.job.task.creates_mesh(), self.trial.named) {
+            let part = match (entry.job.task.creates_mesh(), self.named) {
                 (false, _) => LONGEST_ONCE,
                 (true, false) => LONGEST_UNNAMED,
                 (true, true) => 1.0, // it was named in the settings
@@ -140,7 +140,7 @@ impl Measurement<'_, '_, '_> {
         let walked = operation.grows_with_valence();
         ElementKind::ALL.map(|kind| {
             let k = kind.index();
-            scanned[k] || (self.trial.skewed && walked[k])
+            scanned[k] || (self.skewed && walked[k])
         })
     }
 
@@ -161,7 +161,7 @@ impl Measurement<'_, '_, '_> {
         // A quarter of the slot is for the sample, and a quarter for the untimed runs. The rest is
         // for waiting and for work between runs.
         let target = (slot_ns / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
-        entry.runs = match self.trial.memory.is_cold() {
+        entry.runs = match self.memory.is_cold() {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MAX_RUNS) as u32,
         };
@@ -178,11 +178,11 @@ impl Measurement<'_, '_, '_> {
 
     /// Returns the run, and the wall time that passed outside the timed part, in nanoseconds.
     fn run_with_overhead(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
-        let start = self.trial.clock().now().wall_ns;
+        let start = self.clock().now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
         let [untimed, runs] = runs;
         let inside = run.time.wall_ns * f64::from(untimed + runs);
-        let outside = self.trial.clock().now().wall_ns - start - inside;
+        let outside = self.clock().now().wall_ns - start - inside;
         (run, outside.max(0.0))
     }
 
@@ -190,14 +190,14 @@ impl Measurement<'_, '_, '_> {
         entry.cost_ns = cost_ns;
         // Operations that make a mesh are long. If they were not named, they take part in fewer
         // rounds.
-        let unnamed = entry.job.task.creates_mesh() && !self.trial.named;
+        let unnamed = entry.job.task.creates_mesh() && !self.named;
         let most = if unnamed { 1.0 } else { 4.0 };
         let scans_all = entry.job.sample.is_none() && self.scans(entry).contains(&true);
         entry.every = match cost_ns / slot_ns {
             slots if slots <= most => 1,
             slots if slots <= MEDIUM_COST_SLOTS => MEDIUM_COST_EVERY,
             // Such a scan is far from the fastest, so its first run is enough.
-            _ if scans_all && !self.trial.named => 0,
+            _ if scans_all && !self.named => 0,
             _ => HIGH_COST_EVERY,
         };
     }
@@ -239,19 +239,16 @@ impl Measurement<'_, '_, '_> {
         let size = ((slot_ns / each) as usize).clamp(MIN_ELEMENTS, all.max(MIN_ELEMENTS));
         entry.job.sample = Some(ElementSample { scanned, size });
         entry.untimed = 0;
-        let start = self.trial.clock().now().wall_ns;
+        let start = self.clock().now().wall_ns;
         let run = self.run(entry.subject, &entry.job, [0, 1], true);
         record_warm_up(entry, run);
-        let cost = self.trial.clock().now().wall_ns - start;
+        let cost = self.clock().now().wall_ns - start;
         self.plan_rounds(entry, cost, slot_ns);
     }
 
     pub(crate) fn max_elements(&self, scanned: [bool; 3]) -> usize {
         let counts = (0..3).filter(|&k| scanned[k]);
-        counts
-            .map(|k| self.trial.population()[k])
-            .max()
-            .unwrap_or(0)
+        counts.map(|k| self.population()[k]).max().unwrap_or(0)
     }
 
     /// Times increasing numbers of elements until one run takes as long as a sample.
@@ -269,9 +266,9 @@ impl Measurement<'_, '_, '_> {
                 sample: Some(ElementSample { scanned, size }),
                 ..operation.into()
             };
-            let start = self.trial.clock().now().wall_ns;
+            let start = self.clock().now().wall_ns;
             let whole = self.run(subject, &job, [0, 1], false).time;
-            let cost = self.trial.clock().now().wall_ns - start;
+            let cost = self.clock().now().wall_ns - start;
             if cost > slot_ns.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
                 return Probe { whole, cost, size };
             }
@@ -305,7 +302,7 @@ impl Measurement<'_, '_, '_> {
         if self.stopped() || entry.refusal.is_some() {
             return;
         }
-        let most = match (searches, self.trial.named) {
+        let most = match (searches, self.named) {
             (true, _) => slot_ns,
             (false, false) => LONGEST_UNNAMED * left,
             (false, true) => LONGEST_IN_ROUNDS * left,
@@ -324,7 +321,7 @@ impl Measurement<'_, '_, '_> {
     }
 
     fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], slot_ns: f64) -> Time {
-        let mut total = Time::zero_like(self.trial.clock().now());
+        let mut total = Time::zero_like(self.clock().now());
         for kind in ElementKind::ALL
             .into_iter()
             .filter(|kind| scanned[kind.index()])
@@ -344,13 +341,13 @@ impl Measurement<'_, '_, '_> {
     /// Returns `None` if the next patch would be the whole mesh. A patch fits the cache, so the
     /// estimate tends to be too low.
     fn time_by_patches(&mut self, entry: &mut Entry, slot_ns: f64) -> Option<Time> {
-        let all = self.trial.counts.faces;
+        let all = self.counts.faces;
         let mut size = FIRST_PATCH;
         while size < all {
-            let start = self.trial.clock().now().wall_ns;
+            let start = self.clock().now().wall_ns;
             let run = self.run_patch(entry, size);
             entry.refusal = run.refusal;
-            let cost = self.trial.clock().now().wall_ns - start;
+            let cost = self.clock().now().wall_ns - start;
             if cost > slot_ns || size.saturating_mul(4) >= all || self.stopped() {
                 return Some(run.time);
             }

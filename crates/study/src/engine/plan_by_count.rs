@@ -17,7 +17,7 @@ const VISITS_PER_MADE_ELEMENT: f64 = 50.0;
 /// Maximum number of faces that a sample of a scanning operation visits.
 const MAX_SCANNED: usize = 1_000_000;
 
-impl Measurement<'_, '_, '_> {
+impl Measurement<'_, '_> {
     /// Runs everything once, and plans a sample of every entry for every round. An operation is
     /// never estimated or left out.
     pub(crate) fn plan_by_count(&mut self, entries: &mut [Entry]) {
@@ -31,16 +31,16 @@ impl Measurement<'_, '_, '_> {
             let scans = scanned.contains(&true);
             let can_be_sampled = entry.operation().is_some_and(|o| o.can_be_sampled());
             if scans && can_be_sampled {
-                let size = MIN_ELEMENTS.max(MAX_SCANNED / self.trial.counts.faces.max(1));
+                let size = MIN_ELEMENTS.max(MAX_SCANNED / self.counts.faces.max(1));
                 let is_part = size < self.max_elements(scanned);
                 entry.job.sample = is_part.then_some(ElementSample { scanned, size });
             }
             let run = self.run(entry.subject, &entry.job, [0, 1], true);
             record_warm_up(entry, run);
             entry.least_every = 1;
-            entry.runs = match entry.job.sample.is_some() || self.trial.memory.is_cold() {
+            entry.runs = match entry.job.sample.is_some() || self.memory.is_cold() {
                 true => 1,
-                false => runs_per_sample(entry, scans, self.trial.counts.faces),
+                false => runs_per_sample(entry, scans, self.counts.faces),
             };
             // A sample of a scan, and a run that visits so much, warm the caches by themselves.
             entry.untimed = match entry.runs {

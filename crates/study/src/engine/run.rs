@@ -7,8 +7,6 @@ use sixfold_results::{Environment, Run, RunSettings, Start};
 use sixfold_workload::{MachineClock, Operation, caches};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
-use crate::engine::heap::Memory;
-
 /// Describes a measurement that begins now.
 pub fn start_run(settings: RunSettings) -> Run {
     Run {
@@ -18,13 +16,6 @@ pub fn start_run(settings: RunSettings) -> Run {
         operations: Operation::ALL.map(Operation::info).into(),
         start: start(),
     }
-}
-
-/// Adds the heap policy and the cache state that are in force.
-pub(crate) fn with_memory(mut run: Run, memory: &Memory) -> Run {
-    run.environment.heap = Some(memory.heap());
-    run.environment.cache_state = Some(memory.caches());
-    run
 }
 
 /// Returns the current time and load.

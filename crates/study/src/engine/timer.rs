@@ -5,8 +5,6 @@ use std::hint::black_box;
 use sixfold_results::Timer;
 use sixfold_workload::Clock;
 
-use crate::engine::measure::Entry;
-
 /// Number of readings.
 const TRIALS: usize = 1001;
 
@@ -39,12 +37,6 @@ pub(crate) fn measure(clock: &dyn Clock) -> Timer {
         largest_share: None,
         shortest_ns: None,
     }
-}
-
-/// Adds the shortest sample of `entries`.
-pub(crate) fn with_entries(timer: Timer, entries: &[Entry]) -> Timer {
-    let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
-    timer.with_shortest(shortest.min_by(f64::total_cmp))
 }
 
 #[cfg(test)]

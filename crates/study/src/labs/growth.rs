@@ -24,18 +24,13 @@ use sixfold_core::Counts;
 pub use settings::{GrowthError, GrowthSettings, growth_bytes, growth_plan};
 pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
-use crate::engine::agreement::compare_checksums;
-use crate::engine::effort::Effort;
-use crate::engine::heap::Memory;
+use crate::engine::bench::{Bench, Columns, Trial};
+use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
-use crate::engine::measure::corrected_entries;
-use crate::engine::measure::{Entry, Progress};
-use crate::engine::run::{start_run, with_memory};
-use crate::engine::timer;
-use crate::engine::trial::{Columns, Measured, Trial};
+use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
-use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::labs::study::{StudyError, is_skewed, prepare, scans};
 use crate::refusal::Candidate;
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
@@ -77,22 +72,20 @@ pub(crate) fn growth_on(
     let plan = settings.plan()?;
     let caches = caches();
     let clock = machine.clock();
-    let run = start_run(settings.study.run_settings());
-    let mut timer = timer::measure(clock);
+    let study = &settings.study;
+    let budget = Budget::start(study.effort, clock);
+    let needed = growth_bytes(settings)?;
+    let bench = Bench::start(machine, budget, study.run_settings(), needed, stop)
+        .map_err(StudyError::from)?;
     let mut sweep = Sweep {
         settings,
         plan: &plan,
         caches: &caches,
-        stop,
+        bench,
         refused_by: Vec::new(),
         counts: None,
-        machine,
         shortest_ns: None,
     };
-    let study = &settings.study;
-    let mut memory = machine
-        .start_memory(study.heap, study.caches, growth_bytes(settings)?)
-        .map_err(StudyError::from)?;
     let time = SizeBudgets::new(&plan.sizes, study.effort, clock);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut meshes = Vec::new();
@@ -123,7 +116,7 @@ pub(crate) fn growth_on(
                 ..at
             });
         };
-        match sweep.size(&mesh, step, &effort, &mut memory, &mut report_progress)? {
+        match sweep.size(&mesh, step, &effort, &mut report_progress)? {
             Some((size, mesh)) => {
                 sizes.push(size);
                 meshes.push(mesh);
@@ -154,8 +147,8 @@ pub(crate) fn growth_on(
         .map_or_else(Vec::new, |counts| cache_limits(&backends, &counts, &caches));
     let mut sentences = sentences::sentences(&sizes, &fits, &caches, &cache_limits);
     sentences.extend(sentences::left_out(&left_out));
-    let run = with_memory(run, &memory);
-    timer = timer.with_shortest(sweep.shortest_ns);
+    let run = sweep.bench.run();
+    let timer = sweep.bench.timer(sweep.shortest_ns);
     let rows: Vec<&ResultRow> = sizes.iter().flat_map(|size| &size.results).collect();
     let noisiest = sizes.iter().filter_map(|size| size.control.as_ref());
     let noisiest = noisiest.max_by(|a, b| a.typical.total_cmp(&b.typical));
@@ -184,11 +177,10 @@ struct Sweep<'s> {
     settings: &'s GrowthSettings,
     plan: &'s Plan,
     caches: &'s [Cache],
-    stop: &'s AtomicBool,
+    bench: Bench<'s>,
     refused_by: Vec<BackendRefusal>,
     /// Counts of the largest finished size.
     counts: Option<Counts>,
-    machine: &'s dyn Machine,
     /// The shortest timed sample, in nanoseconds.
     shortest_ns: Option<f64>,
 }
@@ -200,7 +192,6 @@ impl Sweep<'_> {
         study_mesh: &StudyMesh,
         step: usize,
         effort: &dyn Fn() -> Effort,
-        memory: &mut Memory,
         progress: &mut dyn FnMut(Progress<'_>),
     ) -> Result<Option<(SizeReport, MeshReport)>, GrowthError> {
         let Plan {
@@ -208,7 +199,7 @@ impl Sweep<'_> {
             operations,
             ..
         } = self.plan;
-        let stopped = || self.stop.load(Ordering::Relaxed);
+        let machine = self.bench.machine;
         let (mesh, facts) = (&study_mesh.polygons, &study_mesh.facts);
         let counts = mesh.counts(facts.edges);
         let skewed = is_skewed(facts);
@@ -219,7 +210,7 @@ impl Sweep<'_> {
         let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
         let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
         for backend in backends {
-            if stopped() {
+            if self.bench.stopped() {
                 return Ok(None);
             }
             let (report, subject) = prepare(backend, &candidate, draw.as_ref());
@@ -227,7 +218,7 @@ impl Sweep<'_> {
                 Some(subject) => {
                     backend_bytes
                         .push(self.bytes_with_cache(report.name, report.bytes.unwrap_or(0)));
-                    subjects.push(self.machine.host(subject, &counts));
+                    subjects.push(machine.host(subject, &counts));
                 }
                 None => refused_by.push(report.into()),
             }
@@ -237,53 +228,39 @@ impl Sweep<'_> {
         }
         self.refused_by = refused_by;
         let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();
-        let mut columns = Columns::new(subjects, Vec::new(), |first| {
+        let columns = Columns::new(subjects, Vec::new(), |first| {
             let backend = backends.iter().find(|b| b.name() == names[first])?;
             let (subject, _) = backend.prepare(mesh, draw.as_ref()).ok()?;
-            Some(self.machine.host(subject, &counts))
+            Some(machine.host(subject, &counts))
         });
-        let mut trial = Trial {
+        let trial = Trial {
+            polygons: mesh,
             counts,
             skewed,
-            machine: self.machine,
-            memory,
+            entries: columns.entries(operations),
+            columns,
             effort: effort(),
             named: !self.settings.study.operations.is_empty(),
             seed: seed.wrapping_add(step as u64),
-            stop: self.stop,
-            progress,
         };
-        let entries = columns.entries(operations);
-        let measured = trial.run(&mut columns, entries);
-        let samples = measured.samples(&columns);
-        let Measured {
-            entries, control, ..
-        } = measured;
-        let subjects = &mut columns.subjects;
-        let agreements =
-            compare_checksums(&entries, subjects, mesh, self.machine.clock(), self.stop);
-        if self.stop.load(Ordering::Relaxed) {
+        let measured = self.bench.measure(trial, progress);
+        if self.bench.stopped() {
             return Ok(None);
         }
         self.counts = Some(counts);
-        let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
-        self.shortest_ns = shortest.chain(self.shortest_ns).min_by(f64::total_cmp);
+        let shortest = [measured.shortest_ns(), self.shortest_ns]
+            .into_iter()
+            .flatten();
+        self.shortest_ns = shortest.min_by(f64::total_cmp);
         let size = SizeReport {
             vertices: counts.vertices,
             edges: counts.edges,
             faces: counts.faces,
             backend_bytes,
-            results: results(
-                &entries,
-                &corrected_entries(&entries),
-                &agreements,
-                subjects,
-                mesh,
-                control.as_ref(),
-            ),
-            samples,
-            refusals: refusals(&entries, subjects),
-            control,
+            results: measured.rows(),
+            samples: measured.samples(),
+            refusals: measured.refusals(),
+            control: measured.control,
         };
         Ok(Some((size, study_mesh.report())))
     }

@@ -13,26 +13,20 @@ use std::time::Duration;
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
 use sixfold_results::{
-    Agreement, CacheState, CheapestIndices, IndexReport, NeighboursReport, Policy, QueryPoints,
-    ResultRow, RunSettings, SpatialTask,
+    CheapestIndices, IndexReport, NeighboursReport, Policy, QueryPoints, ResultRow, RunSettings,
+    SpatialTask, noise,
 };
 use sixfold_workload::spatial::{IndexKind, Input, KINDS, LIST};
 use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
 
-use crate::engine::agreement::compare_checksums;
+use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
-use crate::engine::measure::corrected_entries;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::run::{start_run, with_memory};
-use crate::engine::timer;
-use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::machine_warnings;
 use crate::inspect::StudyMesh;
-use crate::labs::rows::Group;
 use crate::labs::study::StudyError;
 use cheapest::{Cost, cheapest};
-use sixfold_results::ranking::{NO_DIFFERENCE, ratio};
 
 /// Maximum number of elements that the list visits in one run.
 const LIST_VISITS: usize = 4_000_000;
@@ -124,19 +118,12 @@ pub(crate) fn neighbours_on(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<NeighboursReport, NeighboursError> {
-    let clock = machine.clock();
-    let budget = Budget::start(settings.effort, clock);
+    let budget = Budget::start(settings.effort, machine.clock());
     let chosen = settings.chosen()?;
     let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let run = start_run(RunSettings {
-        backends: settings.indices.clone(),
-        seed: settings.seed,
-        heap: settings.heap,
-        ..settings.effort.run_settings()
-    });
     let input = Input::new(polygons, settings.points, settings.seed)?;
     let counts = polygons.counts(study_mesh.facts.edges);
     let build = |kind: &IndexKind| Ok(machine.host(kind.build(&input)?, &counts));
@@ -150,43 +137,34 @@ pub(crate) fn neighbours_on(
     });
     let backends: Vec<IndexReport> = backends.collect();
     let needed: usize = backends.iter().map(|index| index.bytes).sum();
-    let mut memory = machine
-        .start_memory(settings.heap, CacheState::Warm, needed as u64)
+    let run_settings = RunSettings {
+        backends: settings.indices.clone(),
+        seed: settings.seed,
+        heap: settings.heap,
+        ..settings.effort.run_settings()
+    };
+    let mut bench = Bench::start(machine, budget, run_settings, needed as u64, stop)
         .map_err(StudyError::from)?;
     let again = |first: usize| {
         build(&chosen[first])
             .ok()
             .filter(|_| chosen[first].name != LIST)
     };
-    let mut columns = Columns::new(subjects, Vec::new(), again);
-    let timer = timer::measure(clock);
-    let entries = entries(&columns, &input);
-    let mut trial = Trial {
+    let columns = Columns::new(subjects, Vec::new(), again);
+    let trial = Trial {
+        polygons,
         counts,
         skewed: false,
-        machine,
-        memory: &mut memory,
-        effort: budget.left(),
+        entries: entries(&columns, &input),
+        columns,
+        effort: bench.budget.left(),
         named: true,
         seed: settings.seed,
-        stop,
-        progress,
     };
-    let measured = trial.run(&mut columns, entries);
-    let samples = measured.samples(&columns);
-    let Measured {
-        entries,
-        second,
-        interrupted,
-        ..
-    } = measured;
-    let control = columns.control;
-    let subjects = &mut columns.subjects;
-    let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
-    let measured_noise = |task| difference(control?[0], &entries, &second, task);
-    let noise = |task| measured_noise(task).unwrap_or(1.0).max(NO_DIFFERENCE);
-    let results = results(&entries, &agreements, subjects, &noise);
-    let run = with_memory(run, &memory);
+    let measured = bench.measure(trial, progress);
+    let (run, results, samples) = (bench.run(), measured.rows(), measured.samples());
+    let control = measured.control.as_ref();
+    let noise = |task: SpatialTask| noise(control, task.name());
     let mut report = NeighboursReport {
         warnings: machine_warnings(&run, &samples.iter().collect::<Vec<_>>()),
         run,
@@ -197,14 +175,11 @@ pub(crate) fn neighbours_on(
         backends,
         cheapest: cheapest_indices(&results, &noise),
         results,
-        noise: SpatialTask::ALL
-            .into_iter()
-            .filter_map(measured_noise)
-            .reduce(f64::max),
+        noise: control.map(|control| control.worst),
         sentences: Vec::new(),
         samples,
-        interrupted,
-        timer: timer::with_entries(timer, &entries),
+        interrupted: measured.interrupted,
+        timer: bench.timer(measured.shortest_ns()),
     };
     report.sentences = sentences::sentences(&report);
     Ok(report)
@@ -218,6 +193,7 @@ fn entries(columns: &Columns<'_>, input: &Input) -> Vec<Entry> {
         for (subject, index) in columns.subjects.iter().enumerate() {
             let mut entry = Entry::of_task(subject, Task::Part(part), task.name());
             entry.pauses_clock = task.build().is_none();
+            entry.per = task.unit();
             if index.name() == LIST {
                 let items = match task.build() {
                     Some(SpatialTask::BuildVertices) => input.vertices.len(),
@@ -235,47 +211,6 @@ fn entries(columns: &Columns<'_>, input: &Input) -> Vec<Entry> {
         }
     }
     entries
-}
-
-/// Returns the longer time of the two measurements of the index `first`, divided by the shorter
-/// time.
-fn difference(first: usize, entries: &[Entry], second: &[Entry], task: SpatialTask) -> Option<f64> {
-    let of_task = |entry: &&Entry| entry.name == task.name();
-    let once = entries
-        .iter()
-        .filter(of_task)
-        .find(|entry| entry.subject == first)?;
-    let again = second.iter().find(of_task)?;
-    let ratio = ratio(&again.times(), &once.times())?.value;
-    (ratio.is_finite() && ratio > 0.0).then(|| ratio.max(ratio.recip()))
-}
-
-/// Returns a row for each entry with a time. The entries of a task are adjacent.
-fn results(
-    entries: &[Entry],
-    agreements: &[Agreement],
-    subjects: &[Box<dyn TimedBackend + '_>],
-    noise: &impl Fn(SpatialTask) -> f64,
-) -> Vec<ResultRow> {
-    let times = corrected_entries(entries);
-    let mut rows = Vec::new();
-    let mut from = 0;
-    let groups = entries.chunk_by(|a, b| a.job.task == b.job.task);
-    for (entries, task) in groups.zip(SpatialTask::ALL) {
-        let range = from..from + entries.len();
-        from = range.end;
-        let group = Group {
-            operation: task.name(),
-            unit: task.unit(),
-            entries,
-            times: &times[range.clone()],
-            agreements: &agreements[range],
-            noise: noise(task),
-            expected: None,
-        };
-        rows.extend(group.rows(subjects));
-    }
-    rows
 }
 
 /// Returns for each kind of query which index takes the least time, building included.

@@ -13,28 +13,21 @@ mod sentences;
 
 use std::sync::atomic::AtomicBool;
 
-use sixfold::PolygonMesh;
 use sixfold::shapes::Order;
 use sixfold_core::Counts;
 
-use crate::engine::agreement::compare_checksums;
+use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::Budget;
 use crate::engine::machine::Machine;
-use crate::engine::measure::corrected_entries;
-use crate::engine::measure::{Entry, Progress};
-use crate::engine::run::{start_run, with_memory};
-use crate::engine::timer;
-use crate::engine::trial::{Columns, Measured, Trial};
+use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 
-use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::labs::study::{Settings, StudyError, is_skewed, prepare, scans};
 use crate::refusal::Candidate;
 use effects::{OrderSamples, comparison};
 use meshes::OrderedMeshes;
-use sixfold_results::{
-    Agreement, Comparison, Control, OrdersReport, Refusal, ResultRow, Samples, noise,
-};
+use sixfold_results::{Comparison, OrdersReport, Refusal, ResultRow, Samples, noise};
 use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
 
 /// Names of the operations that [`orders`] measures if the settings name no operations.
@@ -87,18 +80,16 @@ pub(crate) fn orders_on(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<OrdersReport, StudyError> {
-    let clock = machine.clock();
-    let budget = Budget::start(settings.effort, clock);
+    let budget = Budget::start(settings.effort, machine.clock());
     let chosen = settings.chosen_backends()?;
     let operations = chosen_operations(settings);
     let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces);
     }
-    let run = start_run(settings.run_settings());
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = orders_bytes(study_mesh, settings)?;
-    let mut memory = machine.start_memory(settings.heap, settings.caches, needed)?;
+    let mut bench = Bench::start(machine, budget, settings.run_settings(), needed, stop)?;
     let skewed = is_skewed(&study_mesh.facts);
     let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
     let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);
@@ -128,49 +119,35 @@ pub(crate) fn orders_on(
         return Err(StudyError::none_holds(backends));
     }
     // The control is a structure in the given order, which comes first.
-    let mut measured = Columns::new(subjects, Vec::new(), |first| {
+    let built = Columns::new(subjects, Vec::new(), |first| {
         let (_, mesh, draw) = meshes.iter().next()?;
         let (subject, _) = columns[first].backend.prepare(mesh, draw).ok()?;
         Some(machine.host(subject, &counts))
     });
-    let timer = timer::measure(clock);
-    let mut trial = Trial {
+    if let Some([first, _]) = built.control {
+        columns.push(columns[first]);
+    }
+    let mut entries = built.entries(&operations);
+    for entry in &mut entries {
+        entry.case = columns[entry.subject].order.name();
+    }
+    let trial = Trial {
+        polygons,
         counts,
         skewed,
-        machine,
-        memory: &mut memory,
-        effort: budget.left(),
+        entries,
+        columns: built,
+        effort: bench.budget.left(),
         named: !settings.operations.is_empty(),
         seed: settings.seed,
-        stop,
-        progress,
     };
-    let entries = measured.entries(&operations);
-    let Measured {
-        entries,
-        control,
-        interrupted,
-        ..
-    } = trial.run(&mut measured, entries);
-    let subjects = &mut measured.subjects;
-    let mut compare =
-        |entries: &[Entry]| compare_checksums(entries, subjects, polygons, clock, stop);
-    let agreements = agreements(&entries, &columns, &mut compare);
-
-    let refusals = deduplicated(refusals(&entries, subjects));
     // One correction for all orders of all structures, so that all their times can be compared.
-    let corrected = corrected_entries(&entries);
-    let rows = rows(
-        &entries,
-        &corrected,
-        &agreements,
-        &columns,
-        subjects,
-        polygons,
-        control.as_ref(),
-    );
+    let measured = bench.measure(trial, progress);
+    // A row is compared with the other orders of its structure.
+    let results = measured.rows_by(|entry| columns[entry.subject].backend.name());
+    let control = measured.control.as_ref();
     let timed = |operation: Operation| {
-        let all = entries.iter().zip(&corrected);
+        let all = measured.entries.iter().zip(&measured.times);
         let of_it = all.filter(|(entry, _)| entry.operation() == Some(operation));
         let timed = of_it.map(|(entry, &ns)| OrderSamples {
             backend: columns[entry.subject].backend.name(),
@@ -180,101 +157,37 @@ pub(crate) fn orders_on(
             ns,
         });
         let timed: Vec<OrderSamples> = timed.collect();
-        comparison(operation, &timed, noise(control.as_ref(), operation.name()))
+        comparison(operation, &timed, noise(control, operation.name()))
     };
     let comparisons: Vec<Comparison> = operations.into_iter().map(timed).collect();
-    let sentences = sentences::sentences(&rows, &comparisons, control.as_ref());
-    let run = with_memory(run, &memory);
-    let timer = timer::with_entries(timer, &entries);
-    let timed: Vec<&ResultRow> = rows.iter().collect();
-    let samples = entries.iter().filter_map(|entry| {
-        let Column { backend, order } = columns[entry.subject];
-        Some(Samples {
-            case: order.name().into(),
-            ..entry.to_samples(backend.name(), false)?
-        })
-    });
-    let samples: Vec<Samples> = samples.collect();
-    let all: Vec<&Samples> = samples.iter().collect();
-    let mut warned: Vec<String> = sentences::mismatches(&rows).collect();
-    warned.extend(warnings(&run, &timer, &timed, &all, control.as_ref()));
-    Ok(OrdersReport {
-        run,
+    let timer = bench.timer(measured.shortest_ns());
+    let mut report = OrdersReport {
+        run: bench.run(),
         mesh: study_mesh.report(),
         orders: Order::ALL.map(|order| order.to_string()).into(),
         backends,
-        samples,
-        results: rows,
-        refusals,
+        sentences: sentences::sentences(&results, &comparisons, control),
+        warnings: sentences::mismatches(&results).collect(),
+        samples: measured.samples(),
+        results,
+        refusals: deduplicated(measured.refusals()),
         comparisons,
-        control,
-        sentences,
-        warnings: warned,
-        interrupted,
+        interrupted: measured.interrupted,
+        control: measured.control,
         timer,
-    })
+    };
+    let rows: Vec<&ResultRow> = report.results.iter().collect();
+    let samples: Vec<&Samples> = report.samples.iter().collect();
+    let control = report.control.as_ref();
+    let measured = warnings(&report.run, &timer, &rows, &samples, control);
+    report.warnings.extend(measured);
+    Ok(report)
 }
 
+#[derive(Clone, Copy)]
 struct Column {
     backend: Backend,
     order: Order,
-}
-
-/// Returns whether the result depends on the order of the input.
-fn depends_on_order(entry: &Entry) -> bool {
-    entry.operation().is_some_and(Operation::depends_on_order)
-}
-
-/// Compares the checksums of all orders. If the result of an operation depends on the order,
-/// compares the checksums only within each order.
-fn agreements(
-    entries: &[Entry],
-    columns: &[Column],
-    compare: &mut dyn FnMut(&[Entry]) -> Vec<Agreement>,
-) -> Vec<Agreement> {
-    let mut agreements = vec![Agreement::Unchecked; entries.len()];
-    let mut compare_group = |takes_part: &dyn Fn(&Entry) -> bool| {
-        let indices: Vec<usize> = (0..entries.len())
-            .filter(|&e| takes_part(&entries[e]))
-            .collect();
-        let group: Vec<Entry> = indices.iter().map(|&e| entries[e].clone()).collect();
-        for (e, agreement) in indices.into_iter().zip(compare(&group)) {
-            agreements[e] = agreement;
-        }
-    };
-    compare_group(&|entry| !depends_on_order(entry));
-    for order in Order::ALL {
-        compare_group(&|entry| depends_on_order(entry) && columns[entry.subject].order == order);
-    }
-    agreements
-}
-
-/// Returns a row for each entry with a time. A row is compared with the other orders of its
-/// structure.
-fn rows(
-    entries: &[Entry],
-    times: &[Option<f64>],
-    agreements: &[Agreement],
-    columns: &[Column],
-    subjects: &[Box<dyn TimedBackend + '_>],
-    polygons: &PolygonMesh,
-    control: Option<&Control>,
-) -> Vec<ResultRow> {
-    let mut rows = Vec::new();
-    let mut from = 0;
-    let backend = |entry: &Entry| columns[entry.subject].backend.name();
-    for orders in entries.chunk_by(|a, b| a.job.task == b.job.task && backend(a) == backend(b)) {
-        let range = from..from + orders.len();
-        from = range.end;
-        let (times, agreements) = (&times[range.clone()], &agreements[range]);
-        let in_orders = results(orders, times, agreements, subjects, polygons, control);
-        let measured = orders.iter().filter(|entry| entry.has_time());
-        rows.extend(measured.zip(in_orders).map(|(entry, row)| ResultRow {
-            case: columns[entry.subject].order.name().into(),
-            ..row
-        }));
-    }
-    rows
 }
 
 fn deduplicated(refusals: Vec<Refusal>) -> Vec<Refusal> {

@@ -23,8 +23,7 @@ mod tests;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_core::Counts;
-use sixfold_results::{CacheState, Excluded, Need, PickReport, Policy, RunSettings};
+use sixfold_results::{Excluded, Need, PickReport, Policy, RunSettings};
 use sixfold_workload::{
     Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
     prepare_mix, tabulate,
@@ -35,15 +34,13 @@ pub(crate) use programs::Qualification;
 pub use programs::{ProgramSettings, pick_for_programs};
 pub use recording::{RecordError, RecordedProgram, record_program};
 
+use crate::engine::bench::Bench;
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
-use crate::engine::run::{start_run, with_memory};
-use crate::engine::timer;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{Settings, StudyError, needed_bytes};
 use crate::refusal::Candidate;
-use backend::PickBackend;
+use backend::{PickBackend, build_tables};
 use measurement::{Contestant, PickMeasurement};
 use pooled::Question;
 use tasks::Tasks;
@@ -155,14 +152,12 @@ pub(crate) fn pick_on(
     }
     let clock = machine.clock();
     let budget = Budget::start(settings.effort, clock);
-    let run = start_run(settings.run_settings());
     let needed = study_meshes
         .iter()
         .map(|study_mesh| needed(study_mesh, settings));
-    let mut memory = machine
-        .start_memory(settings.heap, CacheState::Warm, needed.max().unwrap_or(0))
+    let needed = needed.max().unwrap_or(0);
+    let mut bench = Bench::start(machine, budget, settings.run_settings(), needed, stop)
         .map_err(StudyError::from)?;
-    let timer = timer::measure(clock);
     let mut outcomes = Vec::new();
     for (i, study_mesh) in study_meshes.iter().enumerate() {
         if stop.load(Ordering::Relaxed) && i > 0 {
@@ -171,14 +166,14 @@ pub(crate) fn pick_on(
         let part = |done: f64| (i as f64 + done) / study_meshes.len() as f64;
         let mut progress = |done: f64, what: &str| progress(part(done), what);
         let rest = study_meshes.len() - i;
-        let context = MeasureContext {
-            budget: Budget::start(budget.share(1.0, rest as f64), clock),
-            machine,
-            memory: &mut memory,
-            stop,
-            progress: &mut progress,
-        };
-        outcomes.push(measure_mesh(study_mesh, settings, context)?);
+        let budget = Budget::start(budget.share(1.0, rest as f64), clock);
+        outcomes.push(measure_mesh(
+            study_mesh,
+            settings,
+            &mut bench,
+            budget,
+            &mut progress,
+        )?);
     }
     let interrupted = stop.load(Ordering::Relaxed);
     Ok(pooled::pooled(
@@ -189,8 +184,8 @@ pub(crate) fn pick_on(
             needs: settings.needs.clone(),
             max_memory: settings.max_memory,
         },
-        timer,
-        with_memory(run, &memory),
+        bench.timer(None),
+        bench.run(),
         interrupted,
     ))
 }
@@ -201,14 +196,6 @@ fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
     let backends = settings.chosen_backends().unwrap_or_default();
     // The factor 2 includes relation tables and the allocations of edits and subdivision.
     2 * needed_bytes(&backends, &Operation::ALL, &counts)
-}
-
-pub(crate) struct MeasureContext<'m> {
-    budget: Budget<'m>,
-    machine: &'m dyn Machine,
-    memory: &'m mut Memory,
-    stop: &'m AtomicBool,
-    progress: &'m mut dyn FnMut(f64, &str),
 }
 
 /// Returns the backends that qualify, and the excluded backends with the reasons.
@@ -229,15 +216,12 @@ fn qualified(
             .iter()
             .find_map(|need| needs::unmet_reason(*need, &backend));
         let bytes = (backend.layout_bytes)(&candidate.counts) as u64;
-        let excluded_because = match (lacks, settings.max_memory) {
-            (Some(lacks), _) => Some(lacks),
-            (None, Some(most)) if bytes > most => Some(needs::over_memory_limit(bytes, most)),
-            _ => backend
-                .info
-                .check(polygons)
-                .err()
-                .map(|refusal| candidate.reason(&refusal, &backend.info.capabilities)),
+        let large = || needs::over_memory_limit(bytes, settings.max_memory);
+        let refused = || {
+            let refusal = backend.info.check(polygons).err()?;
+            Some(candidate.reason(&refusal, &backend.info.capabilities))
         };
+        let excluded_because = lacks.or_else(large).or_else(refused);
         match excluded_because {
             Some(reason) => excluded.push(Excluded::new(backend.name(), reason)),
             None => qualified.push(backend),
@@ -246,24 +230,14 @@ fn qualified(
     Ok((qualified, excluded))
 }
 
-/// Splits the properties from the backend to measure, which runs on `machine`.
-fn hosted<'b>(backend: PickBackend<'b>, machine: &dyn Machine, counts: &Counts) -> Contestant<'b> {
-    let (candidate, built) = backend.split();
-    (candidate, machine.host(built, counts))
-}
-
 fn measure_mesh(
     study_mesh: &StudyMesh,
     settings: &PickSettings,
-    context: MeasureContext<'_>,
+    bench: &mut Bench<'_>,
+    budget: Budget<'_>,
+    progress: &mut dyn FnMut(f64, &str),
 ) -> Result<measurement::Outcome, PickError> {
-    let MeasureContext {
-        budget,
-        machine,
-        memory,
-        stop,
-        progress,
-    } = context;
+    let machine = bench.machine;
     let (qualifying, mut excluded) = qualified(study_mesh, settings)?;
     let polygons = &study_mesh.polygons;
     let counts = polygons.counts(study_mesh.facts.edges);
@@ -290,7 +264,17 @@ fn measure_mesh(
             Err(refusal) => excluded.push(Excluded::new(backend.name(), refusal.to_string())),
         }
     }
-    backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
+    let most = settings.max_memory;
+    let too_large = |name: &str, bytes: usize| {
+        let reason = needs::over_memory_limit(bytes as u64, most)?;
+        Some(Excluded::new(name, reason))
+    };
+    backends.retain(|PickBackend { mixer, .. }| {
+        let large = too_large(mixer.name(), mixer.bytes());
+        let is_small = large.is_none();
+        excluded.extend(large);
+        is_small
+    });
     let again = backends
         .iter()
         .find(|b| !b.scans())
@@ -300,6 +284,8 @@ fn measure_mesh(
     let has_control = again.is_some();
     backends.extend(again);
     backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
+    let hosted = backends.into_iter().map(|b| b.hosted(machine, &counts));
+    let mut backends: Vec<Contestant<'_>> = hosted.collect();
     let control = backends.pop_if(|_| has_control);
     if settings.needs.contains(&Need::Edit) {
         let reason = "its flat tables cannot be edited".into();
@@ -307,13 +293,13 @@ fn measure_mesh(
     } else {
         progress(0.1, "tabulating");
         let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
-        backends.extend(backend::build_tables(
-            &backends,
-            machine.clock(),
-            settings.effort,
-            tabulate,
-        ));
-        backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
+        let tables = build_tables(&backends, polygons, counts, settings.seed, bench, tabulate);
+        if let Some((tables, built)) = tables {
+            match too_large(&tables.name, tables.bytes) {
+                None => backends.push((tables, built)),
+                large => excluded.extend(large),
+            }
+        }
     }
     let tasks = Tasks::new(workload, &schedule, polygons, &counts);
     let measurement = PickMeasurement {
@@ -322,12 +308,8 @@ fn measure_mesh(
         seed: settings.seed,
         counts,
         effort: budget.left(),
-        machine,
-        memory,
-        stop,
+        bench,
         progress,
     };
-    let backends = backends.into_iter().map(|b| hosted(b, machine, &counts));
-    let control = control.map(|control| hosted(control, machine, &counts));
-    Ok(measurement.run(backends.collect(), control, excluded))
+    Ok(measurement.run(backends, control, excluded))
 }

@@ -6,26 +6,20 @@ pub(crate) mod sentences;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, UnknownName};
+use sixfold::{Distribution, Facts, QueryCost, Relation, UnknownName};
 use sixfold_core::Counts;
 
-use crate::engine::agreement::compare_checksums;
+use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
-use crate::engine::measure::corrected_entries;
-use crate::engine::measure::{Entry, Progress};
-use crate::engine::run::{start_run, with_memory};
-use crate::engine::timer;
+use crate::engine::measure::Progress;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
-use crate::labs::rows::Group;
 use sixfold_results::{
-    Agreement, BackendRefusal, BackendReport, CacheState, Control, Policy, Refusal, Report,
-    ResultRow, RunSettings, Samples, noise,
+    BackendRefusal, BackendReport, CacheState, Policy, Report, ResultRow, RunSettings, Samples,
 };
 
-use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::refusal::Candidate;
 use sixfold_workload::Backend;
@@ -230,8 +224,7 @@ pub(crate) fn study_on(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Report, StudyError> {
-    let clock = machine.clock();
-    let budget = Budget::start(settings.effort, clock);
+    let budget = Budget::start(settings.effort, machine.clock());
     let chosen = settings.chosen_backends()?;
     settings.check_externals()?;
     let operations = settings.chosen_operations();
@@ -239,10 +232,9 @@ pub(crate) fn study_on(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces);
     }
-    let run = start_run(settings.run_settings());
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = needed_bytes(&chosen, &operations, &counts);
-    let mut memory = machine.start_memory(settings.heap, settings.caches, needed)?;
+    let mut bench = Bench::start(machine, budget, settings.run_settings(), needed, stop)?;
     let skewed = is_skewed(&study_mesh.facts);
     let draw = chosen
         .iter()
@@ -269,7 +261,7 @@ pub(crate) fn study_on(
     for (external, mesh) in settings.externals.iter().zip(mesh_file.iter().cycle()) {
         let timeout = settings.external_timeout;
         let (report, subject) =
-            external::prepare(external, mesh, &counts, &memory.heap(), timeout, stop);
+            external::prepare(external, mesh, &counts, &bench.memory.heap(), timeout, stop);
         backends.push(report);
         programs.extend(subject);
     }
@@ -278,60 +270,40 @@ pub(crate) fn study_on(
     }
 
     let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();
-    let mut columns = Columns::new(subjects, programs, |first| {
+    let columns = Columns::new(subjects, programs, |first| {
         let backend = chosen.iter().find(|b| b.name() == names[first])?;
         let (subject, _) = backend.prepare(polygons, draw.as_ref()).ok()?;
         Some(machine.host(subject, &counts))
     });
-    let timer = timer::measure(clock);
-    let mut trial = Trial {
+    let trial = Trial {
+        polygons,
         counts,
         skewed,
-        machine,
-        memory: &mut memory,
-        effort: budget.left(),
+        entries: columns.entries(&operations),
+        columns,
+        effort: bench.budget.left(),
         named: !settings.operations.is_empty(),
         seed: settings.seed,
-        stop,
-        progress,
     };
-    let entries = columns.entries(&operations);
-    let measured = trial.run(&mut columns, entries);
-    let samples = measured.samples(&columns);
-    let Measured {
-        entries,
-        control,
-        interrupted,
-        ..
-    } = measured;
-    let subjects = &mut columns.subjects;
-    let timer = timer::with_entries(timer, &entries);
-    let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
-    let results = results(
-        &entries,
-        &corrected_entries(&entries),
-        &agreements,
-        subjects,
-        polygons,
-        control.as_ref(),
-    );
-    let refusals = refusals(&entries, subjects);
+    let measured = bench.measure(trial, progress);
+    let results = measured.rows();
+    let timer = bench.timer(measured.shortest_ns());
     let scanning = |backend: &str, relation: Relation| {
         let costs = chosen.iter().find(|b| b.name() == backend);
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
     };
     let mut report = Report {
-        run: with_memory(run, &memory),
+        run: bench.run(),
         mesh: study_mesh.report(),
         notes: sentences::notes(&backends, &results),
         backends,
         results,
-        refusals,
-        control,
+        refusals: measured.refusals(),
+        samples: measured.samples(),
+        control: measured.control,
         sentences: Vec::new(),
         warnings: Vec::new(),
-        samples,
-        interrupted,
+        interrupted: measured.interrupted,
         timer: Some(timer),
     };
     report.sentences = sentences::answer(&report, &scanning);
@@ -393,51 +365,6 @@ pub(crate) fn prepare<'a>(
             (report, Some(subject))
         }
     }
-}
-
-/// Returns the rows of all entries. The entries of an operation are adjacent, and are compared with
-/// each other.
-pub(crate) fn results(
-    entries: &[Entry],
-    times: &[Option<f64>],
-    agreements: &[Agreement],
-    subjects: &[Box<dyn TimedBackend + '_>],
-    polygons: &PolygonMesh,
-    control: Option<&Control>,
-) -> Vec<ResultRow> {
-    let mut rows = Vec::new();
-    let mut from = 0;
-    for entries in entries.chunk_by(|a, b| a.job.task == b.job.task) {
-        let range = from..from + entries.len();
-        from = range.end;
-        let Some(operation) = entries[0].operation() else {
-            continue;
-        };
-        let group = Group {
-            operation: operation.name(),
-            unit: operation.unit(),
-            entries,
-            times: &times[range.clone()],
-            agreements: &agreements[range],
-            noise: noise(control, operation.name()),
-            expected: Some(operation.estimated_elements(polygons) as u64),
-        };
-        rows.extend(group.rows(subjects));
-    }
-    rows
-}
-
-pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>]) -> Vec<Refusal> {
-    let refusal = |entry: &Entry| {
-        let reason = entry.refusal.clone()?;
-        Some(Refusal {
-            backend: subjects[entry.subject].name().into(),
-            operation: entry.operation()?.name().into(),
-            kind: entry.refusal_kind,
-            reason,
-        })
-    };
-    entries.iter().filter_map(refusal).collect()
 }
 
 #[cfg(test)]

@@ -6,17 +6,17 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::subdivision::Method;
-use sixfold::{QueryCost, Relation};
+use sixfold::{PolygonMesh, QueryCost, Relation};
 
 use super::*;
+use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::control::control;
-use crate::engine::heap::Memory;
+use crate::engine::effort::Budget;
 use crate::engine::plan::MIN_ELEMENTS;
 use crate::engine::simulated_machine::SimulatedMachine;
-use crate::engine::trial::Columns;
 use sixfold_core::Counts;
 use sixfold_results::statistics::Median;
-use sixfold_results::{CacheState, noise};
+use sixfold_results::{CacheState, RunSettings, noise};
 
 struct Synthetic {
     machine: SimulatedMachine,
@@ -178,9 +178,9 @@ fn watch_trial(
     limits: Limits,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Vec<Entry> {
-    let mut columns = Columns::new(subjects, Vec::new(), |_| None);
-    let entries = columns.entries(operations);
-    let mut trial = Trial {
+    let columns = Columns::without_control(subjects);
+    let trial = Trial {
+        polygons: &PolygonMesh::default(),
         counts: Counts {
             vertices: 10_000,
             edges: 10_000,
@@ -189,15 +189,20 @@ fn watch_trial(
             uniform: true,
         },
         skewed: limits.skewed,
-        machine,
-        memory: &mut Memory::simulated(limits.caches),
+        entries: columns.entries(operations),
+        columns,
         effort: limits.effort,
         named: limits.named,
         seed: 3,
-        stop: &AtomicBool::new(limits.stop),
-        progress,
     };
-    trial.run(&mut columns, entries).entries
+    let settings = RunSettings {
+        caches: limits.caches,
+        ..RunSettings::default()
+    };
+    let stop = AtomicBool::new(limits.stop);
+    let budget = Budget::start(limits.effort, machine);
+    let mut bench = Bench::start(machine, budget, settings, 0, &stop).expect("no heap policy");
+    bench.measure(trial, progress).entries
 }
 
 fn run(

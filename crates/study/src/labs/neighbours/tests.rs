@@ -2,6 +2,7 @@
 //! known.
 
 use sixfold::{PolygonMesh, UnknownName};
+use sixfold_results::Agreement;
 use sixfold_workload::Task;
 
 use super::*;

@@ -1,6 +1,8 @@
 //! Whole measurements of orders on a simulated machine.
 
+use sixfold::PolygonMesh;
 use sixfold::{Facts, shapes};
+use sixfold_results::Agreement;
 
 use super::*;
 use crate::engine::effort::Effort;

@@ -1,14 +1,17 @@
 //! A measured backend of a pick, with its samples.
 
-use crate::engine::effort::Effort;
-use crate::labs::pick::choice::position;
-use sixfold::Edit;
-use sixfold_workload::{
-    Action, Backend, Clock, EditPlaceError, Job, MixBackend, Operation, Schedule, Series,
-};
+use std::num::NonZeroU32;
+use std::time::Duration;
 
+use sixfold::{Edit, PolygonMesh};
+use sixfold_core::Counts;
+use sixfold_workload::{Action, Backend, EditPlaceError, MixBackend, Operation, Schedule};
+
+use crate::engine::bench::{Bench, Columns, Trial};
+use crate::engine::effort::Effort;
+use crate::engine::machine::Machine;
+use crate::labs::pick::choice::position;
 use crate::labs::pick::measurement::Contestant;
-use sixfold_results::Excluded;
 
 /// A structure or relation tables, ready for the mix.
 pub(crate) struct PickBackend<'a> {
@@ -54,6 +57,12 @@ impl<'a> PickBackend<'a> {
         self.mixer.scans().contains(&true)
     }
 
+    /// Splits the properties from the backend to measure, which runs on `machine`.
+    pub(crate) fn hosted(self, machine: &dyn Machine, counts: &Counts) -> Contestant<'a> {
+        let (candidate, built) = self.split();
+        (candidate, machine.host(built, counts))
+    }
+
     /// Splits the properties from the backend to measure.
     pub(crate) fn split(self) -> Contestant<'a> {
         let candidate = Candidate {
@@ -66,23 +75,6 @@ impl<'a> PickBackend<'a> {
         };
         (candidate, self.mixer)
     }
-}
-
-/// Removes the backends that are larger than `most` bytes, and records them in `excluded`.
-pub(crate) fn exclude_large(
-    backends: &mut Vec<PickBackend<'_>>,
-    most: Option<u64>,
-    excluded: &mut Vec<Excluded>,
-) {
-    let Some(most) = most else { return };
-    backends.retain(|backend| {
-        let bytes = backend.mixer.bytes() as u64;
-        if bytes > most {
-            let reason = super::needs::over_memory_limit(bytes, most);
-            excluded.push(Excluded::new(backend.mixer.name(), reason));
-        }
-        bytes <= most
-    });
 }
 
 /// Tries the edits at their places on all backends. Keeps only the places that all backends accept,
@@ -126,10 +118,11 @@ pub(crate) fn keep_common_places(
 
 /// How much longer than the fastest structure the chosen structure may take to make tables.
 const TABLES_EQUAL_UP_TO: f64 = 2.0;
-/// Maximum number of times that each structure makes tables again before one structure is chosen.
-const TABLE_ROUNDS: usize = 5;
-/// Maximum time of these rounds, in nanoseconds, if there is a time limit.
-const TABLE_ROUNDS_NS: f64 = 200e6;
+/// Number of times that each structure makes tables again before one structure is chosen, if the number
+/// of rounds is fixed.
+const TABLE_ROUNDS: NonZeroU32 = NonZeroU32::new(5).expect("above 0");
+/// Time limit of these rounds, if there is a time limit.
+const TABLES_BUDGET: Duration = Duration::from_millis(200);
 
 /// Returns tables of the relations that the workload queries. Returns `None` if the workload has no
 /// such relations.
@@ -137,36 +130,46 @@ const TABLE_ROUNDS_NS: f64 = 200e6;
 /// The tables come from the structure with the fewest bytes among the structures that make them
 /// fast: in at most twice the least time. So the choice does not depend on noise.
 pub(crate) fn build_tables<'a>(
-    backends: &[PickBackend<'a>],
-    clock: &dyn Clock,
-    effort: Effort,
+    backends: &[Contestant<'a>],
+    polygons: &'a PolygonMesh,
+    counts: Counts,
+    seed: u64,
+    bench: &mut Bench<'_>,
     tabulate: impl Fn(&Backend) -> Option<Box<dyn MixBackend + 'a>>,
-) -> Option<PickBackend<'a>> {
-    let start = clock.now();
-    let structures = backends.iter().filter(|b| !b.scans());
-    let mut made: Vec<_> = structures
-        .filter_map(|backend| {
-            let start = clock.now();
-            let tables = tabulate(&backend.structure?)?;
-            Some((backend, tables, (clock.now() - start).ns()))
-        })
-        .collect();
-    for _ in 0..TABLE_ROUNDS {
-        if effort.rounds().is_none() && (clock.now() - start).ns() > TABLE_ROUNDS_NS {
-            break;
-        }
-        for (_, tables, least) in &mut made {
-            let build = Job::from(Operation::Build);
-            *least = least.min(tables.run(&build, &Series::once(clock)).time.ns());
-        }
-    }
-    let least = made.iter().map(|(.., ns)| *ns).min_by(f64::total_cmp)?;
-    made.retain(|(.., ns)| *ns <= TABLES_EQUAL_UP_TO * least);
-    let size = |backend: &PickBackend<'_>| (backend.mixer.bytes(), position(backend.mixer.name()));
-    let (backend, mixer, _) = made.into_iter().min_by_key(|(backend, ..)| size(backend))?;
-    Some(PickBackend {
-        mixer,
-        structure: None,
-        made_from: Some(backend.structure?.name()),
-    })
+) -> Option<Contestant<'a>> {
+    let structures = backends.iter().map(|(candidate, _)| candidate);
+    let made = structures.filter(|c| !c.scans()).filter_map(|candidate| {
+        let tables = PickBackend {
+            mixer: tabulate(&candidate.structure?)?,
+            structure: None,
+            made_from: Some(candidate.structure?.name()),
+        };
+        let (tables, built) = tables.hosted(bench.machine, &counts);
+        let size = (candidate.bytes, position(&candidate.name));
+        Some(((size, tables), built))
+    });
+    let (tables, built): (Vec<_>, Vec<_>) = made.unzip();
+    let columns = Columns::without_control(built);
+    let effort = match bench.budget.left() {
+        Effort::Budget(_) => Effort::Budget(TABLES_BUDGET),
+        Effort::Rounds(_) => Effort::Rounds(TABLE_ROUNDS),
+    };
+    let trial = Trial {
+        polygons,
+        counts,
+        skewed: false,
+        entries: columns.entries(&[Operation::Build]),
+        columns,
+        effort,
+        named: true,
+        seed,
+    };
+    let measured = bench.measure(trial, &mut |_| ());
+    let times = measured.times.iter();
+    let times: Vec<f64> = times.map(|ns| ns.unwrap_or(f64::INFINITY)).collect();
+    let least = times.iter().copied().min_by(f64::total_cmp)?;
+    let each = tables.into_iter().zip(measured.columns.subjects).zip(times);
+    let fast = each.filter(|(_, ns)| *ns <= TABLES_EQUAL_UP_TO * least);
+    let (((_, tables), built), _) = fast.min_by_key(|(((size, _), _), _)| *size)?;
+    Some((tables, built))
 }

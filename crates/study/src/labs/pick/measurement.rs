@@ -1,7 +1,6 @@
 //! The measurement on one mesh, and the ranking that results.
 
 use std::collections::BTreeSet;
-use std::sync::atomic::AtomicBool;
 
 use sixfold_core::Counts;
 use sixfold_results::{
@@ -9,12 +8,9 @@ use sixfold_results::{
 };
 use sixfold_workload::{Operation, Task, TimedBackend};
 
-use crate::engine::agreement::compare_checksums;
+use crate::engine::bench::{Bench, Columns, Measured, Trial};
 use crate::engine::effort::Effort;
-use crate::engine::heap::Memory;
-use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::trial::{Columns, Measured, Trial};
 use crate::inspect::StudyMesh;
 use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::{MeasuredMix, break_even};
@@ -27,15 +23,13 @@ use sixfold_results::statistics::Median;
 pub(crate) type Contestant<'b> = (Candidate, Box<dyn TimedBackend + 'b>);
 
 /// The measurement of the backends of a pick on one mesh.
-pub(crate) struct PickMeasurement<'c> {
+pub(crate) struct PickMeasurement<'c, 'm> {
     pub(crate) study_mesh: &'c StudyMesh,
     pub(crate) plan: &'c dyn TaskPlan,
     pub(crate) seed: u64,
     pub(crate) counts: Counts,
     pub(crate) effort: Effort,
-    pub(crate) machine: &'c dyn Machine,
-    pub(crate) memory: &'c mut Memory,
-    pub(crate) stop: &'c AtomicBool,
+    pub(crate) bench: &'c mut Bench<'m>,
     pub(crate) progress: &'c mut dyn FnMut(f64, &str),
 }
 
@@ -54,54 +48,50 @@ pub(crate) struct Outcome {
     pub(crate) samples: Vec<Samples>,
 }
 
-impl PickMeasurement<'_> {
+impl PickMeasurement<'_, '_> {
     /// Measures `backends` and ranks them. `control` is a second copy of one of them.
     pub(crate) fn run<'b>(
         self,
         backends: Vec<Contestant<'b>>,
         control: Option<Contestant<'b>>,
         mut excluded: Vec<Excluded>,
-    ) -> Outcome {
+    ) -> Outcome
+    where
+        Self: 'b,
+    {
         let polygons = &self.study_mesh.polygons;
         let plan = self.plan;
         let ranked = backends.len();
         let (candidates, mut subjects): (Vec<Candidate>, Vec<Box<dyn TimedBackend + 'b>>) =
             backends.into_iter().chain(control).unzip();
         let again = subjects.pop_if(|_| candidates.len() > ranked);
-        let mut columns = Columns::new(subjects, Vec::new(), |_| again);
         let progress = self.progress;
-        let mut trial = Trial {
+        let trial = Trial {
+            polygons,
             counts: self.counts,
             skewed: is_skewed(&self.study_mesh.facts),
-            machine: self.machine,
-            memory: self.memory,
+            columns: Columns::new(subjects, Vec::new(), |_| again),
+            entries: plan.entries(&candidates),
             effort: self.effort,
             named: true,
             seed: self.seed,
-            stop: self.stop,
-            progress: &mut |at: Progress<'_>| {
-                let Progress {
-                    stage,
-                    task,
-                    backend,
-                    ..
-                } = at;
-                progress(0.1 + 0.9 * at.done, &format!("{stage} {task} on {backend}"));
-            },
         };
-        let measured = trial.run(&mut columns, plan.entries(&candidates));
-        let samples = measured.samples(&columns);
+        let measured = self.bench.measure(trial, &mut |at: Progress<'_>| {
+            let Progress {
+                stage,
+                task,
+                backend,
+                ..
+            } = at;
+            progress(0.1 + 0.9 * at.done, &format!("{stage} {task} on {backend}"));
+        });
+        let (samples, shortest_ns) = (measured.samples(), measured.shortest_ns());
         let Measured {
-            entries, second, ..
+            entries,
+            second,
+            agreements,
+            ..
         } = measured;
-        let subjects = &mut columns.subjects;
-        let agreements = compare_checksums(
-            &entries,
-            subjects,
-            polygons,
-            self.machine.clock(),
-            self.stop,
-        );
         let evaluate = |column: usize| {
             let candidate = &candidates[column];
             let own: Vec<&Entry> = entries
@@ -149,10 +139,7 @@ impl PickMeasurement<'_> {
             noise,
             disagreeing: wrong.collect(),
             operations,
-            shortest_ns: entries
-                .iter()
-                .filter_map(Entry::shortest_sample_ns)
-                .min_by(f64::total_cmp),
+            shortest_ns,
         }
     }
 }

@@ -34,8 +34,11 @@ pub(crate) fn unmet_reason(need: Need, backend: &Backend) -> Option<String> {
     (!has).then(|| format!("{lacks} (--needs {need})"))
 }
 
-/// Returns why a backend of `bytes` bytes is excluded.
-pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
+/// Returns why a backend of `bytes` bytes is excluded; `None` if it may take so many.
+pub(crate) fn over_memory_limit(bytes: u64, most: Option<u64>) -> Option<String> {
+    let most = most.filter(|&most| bytes > most)?;
     let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
-    format!("it takes {bytes} bytes, but --max-memory allows only {most}")
+    Some(format!(
+        "it takes {bytes} bytes, but --max-memory allows only {most}"
+    ))
 }

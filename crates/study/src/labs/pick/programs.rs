@@ -6,19 +6,18 @@ use std::time::Duration;
 
 use sixfold::{QueryCost, UnknownName};
 use sixfold_results::{
-    AskedCount, CacheState, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport, RUN,
-    RunSettings, Time,
+    AskedCount, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport, RUN, RunSettings,
+    Time,
 };
 use sixfold_workload::{
     Access, Amount, Contestant, Job, MachineClock, Operation, ProgramRefusal, Series, Suite,
     SuiteProgram, Task, TimedBackend, Workload, patch,
 };
 
+use crate::engine::bench::Bench;
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
-use crate::engine::run::{start_run, with_memory};
-use crate::engine::timer;
 use crate::external::MeshFile;
 use crate::external::isolated::{ChildTask, Isolated, Isolation};
 use crate::inspect::StudyMesh;
@@ -27,7 +26,7 @@ use crate::labs::pick::break_even::MeasuredMix;
 use crate::labs::pick::measurement::{self, Outcome, PickMeasurement};
 use crate::labs::pick::pooled::{Question, pooled};
 use crate::labs::pick::tasks::{TaskPlan, with_own_time};
-use crate::labs::pick::{MeasureContext, PickError, needs};
+use crate::labs::pick::{PickError, needs};
 use crate::labs::study::StudyError;
 use crate::refusal;
 use sixfold_results::numbers::{counted, duration};
@@ -131,14 +130,11 @@ pub(crate) fn pick_for_programs_on(
     settings.check_names(suite)?;
     let clock = machine.clock();
     let budget = Budget::start(settings.effort, clock);
-    let run = start_run(settings.run_settings());
-    let timer = timer::measure(clock);
     let programs = suite.programs();
     let steps = (programs.len() * study_meshes.len()).max(1);
     // Not a share of the time that is left: a slow program must not exclude structures of the next.
     let longest_run_ns = LONGEST_RUN * settings.effort.limit_ns() / steps as f64;
-    let mut memory = machine
-        .start_memory(settings.heap, CacheState::Warm, 0)
+    let mut bench = Bench::start(machine, budget, settings.run_settings(), 0, stop)
         .map_err(StudyError::from)?;
     let mut reports = Vec::new();
     for (i, program) in programs.iter().enumerate() {
@@ -149,15 +145,10 @@ pub(crate) fn pick_for_programs_on(
             if stop.load(Ordering::Relaxed) && step > 0 {
                 break;
             }
-            let context = MeasureContext {
-                budget: Budget::start(budget.share(1.0, (steps - step) as f64), clock),
-                machine,
-                memory: &mut memory,
-                stop,
-                progress: &mut |done, what| {
-                    let what = format!("{}: {what}", program.name());
-                    progress((step as f64 + done) / steps as f64, &what);
-                },
+            let mesh_budget = Budget::start(budget.share(1.0, (steps - step) as f64), clock);
+            let mut progress = |done: f64, what: &str| {
+                let what = format!("{}: {what}", program.name());
+                progress((step as f64 + done) / steps as f64, &what);
             };
             let isolated = match &settings.isolation {
                 None => None,
@@ -170,7 +161,7 @@ pub(crate) fn pick_for_programs_on(
                 }
             };
             if isolated.is_none() && asked.is_none() {
-                (context.progress)(0.0, "counting what it asks");
+                progress(0.0, "counting what it asks");
                 asked = record(study_mesh, program, settings);
             }
             let conditions = Conditions {
@@ -183,8 +174,15 @@ pub(crate) fn pick_for_programs_on(
                 isolated,
                 stop,
             };
-            let outcome = measure_mesh(study_mesh, program, &conditions, &mut asked, context);
-            outcomes.push(outcome);
+            outcomes.push(measure_mesh(
+                study_mesh,
+                program,
+                &conditions,
+                &mut asked,
+                &mut bench,
+                mesh_budget,
+                &mut progress,
+            ));
         }
         if outcomes.is_empty() {
             break;
@@ -199,8 +197,13 @@ pub(crate) fn pick_for_programs_on(
             max_memory: settings.max_memory,
         };
         let interrupted = stop.load(Ordering::Relaxed);
-        let run = with_memory(run.clone(), &memory);
-        let report = pooled(outcomes, question, timer, run, interrupted);
+        let report = pooled(
+            outcomes,
+            question,
+            bench.timer(None),
+            bench.run(),
+            interrupted,
+        );
         finished(&report);
         reports.push(report);
     }
@@ -232,7 +235,7 @@ impl ProgramSettings {
         Ok(UnknownName::check("backend", &self.backends, known)?)
     }
 
-    fn run_settings(&self) -> RunSettings {
+    pub(super) fn run_settings(&self) -> RunSettings {
         RunSettings {
             backends: self.backends.clone(),
             seed: self.seed,
@@ -264,15 +267,10 @@ fn measure_mesh(
     program: &SuiteProgram,
     conditions: &Conditions<'_>,
     asked: &mut Option<Vec<AskedCount>>,
-    context: MeasureContext<'_>,
+    bench: &mut Bench<'_>,
+    budget: Budget<'_>,
+    progress: &mut dyn FnMut(f64, &str),
 ) -> Outcome {
-    let MeasureContext {
-        budget,
-        machine,
-        memory,
-        stop,
-        progress,
-    } = context;
     let polygons = &study_mesh.polygons;
     let settings = conditions.settings;
     let chosen = program.contestants().iter().filter(|c| settings.chooses(c));
@@ -304,9 +302,7 @@ fn measure_mesh(
         seed: settings.seed,
         counts: polygons.counts(study_mesh.facts.edges),
         effort: budget.left(),
-        machine,
-        memory,
-        stop,
+        bench,
         progress,
     };
     measurement.run(backends, control, excluded)
@@ -352,11 +348,8 @@ impl<'e> Conditions<'e> {
             }
         };
         let bytes = backend.bytes();
-        match self.settings.max_memory {
-            Some(most) if bytes as u64 > most => {
-                return Err(needs::over_memory_limit(bytes as u64, most));
-            }
-            _ => {}
+        if let Some(reason) = needs::over_memory_limit(bytes as u64, self.settings.max_memory) {
+            return Err(reason);
         }
         let candidate = Candidate {
             name: contestant.name().to_owned(),

@@ -1,25 +1,25 @@
 //! Records a program, as a workload and as a trace.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::fmt::Display;
+use std::sync::atomic::AtomicBool;
 
+use sixfold_results::{MIX, RUN};
+use sixfold_workload::pages::HeapPolicyConflict;
 use sixfold_workload::{
-    Backend, Contestant, Draw, Job, MachineClock, Recording, Route, Schedule, Series, Suite,
-    SuiteProgram, Task, TimedBackend, prepare_mix,
+    Backend, Contestant, Draw, MachineClock, Recording, Route, Schedule, Suite, SuiteProgram, Task,
+    TimedBackend, prepare_mix,
 };
 
-use crate::engine::effort::{Budget, Effort};
+use crate::engine::bench::{Bench, Columns, Trial};
+use crate::engine::effort::Budget;
 use crate::engine::machine::Machine;
+use crate::engine::measure::Entry;
 use crate::inspect::StudyMesh;
 use crate::labs::pick::programs::{ProgramSettings, is_local};
-use sixfold_results::statistics::Median;
 
-/// The greatest number of operations of the mix in one timed run.
-const MAX_TURNS: f64 = 4096.0;
-
-/// The number of rounds in which a program, its trace and its workload are measured, unless it is
-/// given.
-const MIN_ROUNDS: usize = 3;
-const MAX_ROUNDS: usize = 101;
+/// The time for choosing the structure on which a program is recorded is a part of the budget: one
+/// part of so many.
+const SELECTION_SHARE: f64 = 4.0;
 
 /// The reason why a program is not recorded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -39,6 +39,9 @@ pub enum RecordError {
     /// The program has too many calls.
     #[error("{program} has more than 16 million calls on {mesh}: record it on a smaller mesh")]
     TooLong { program: String, mesh: String },
+    /// A measurement with another heap policy is active in this process.
+    #[error(transparent)]
+    HeapPolicy(#[from] HeapPolicyConflict),
 }
 
 /// A recorded program.
@@ -52,7 +55,7 @@ pub struct RecordedProgram {
     pub run_ns: f64,
 }
 
-/// Runs `program` on each structure that holds the mesh and does not scan it. Then records what it
+/// Measures `program` on each structure that holds the mesh and does not scan it. Then records what it
 /// asks on the fastest of these structures.
 ///
 /// Then measures the program, its trace and its workload in turns, for a part of the budget of
@@ -62,7 +65,8 @@ pub struct RecordedProgram {
 /// # Errors
 ///
 /// Returns an error if no structure can run the program, if the kind of program cannot be recorded,
-/// or if the run has too many calls.
+/// or if the run has too many calls. Also returns an error if another heap policy is active in this
+/// process.
 pub fn record_program(
     study_mesh: &StudyMesh,
     program: &SuiteProgram,
@@ -95,31 +99,54 @@ pub(crate) fn record_program_on(
     };
     let polygons = &study_mesh.polygons;
     let counts = polygons.counts(study_mesh.facts.edges);
-    let clock = machine.clock();
-    let mut fastest: Option<(f64, &Contestant, Box<dyn TimedBackend + '_>)> = None;
+    let budget = Budget::start(settings.effort, machine.clock());
+    let mut bench = Bench::start(machine, budget, settings.run_settings(), 0, stop)?;
     let mut first_reason = None;
-    let contestants = program.contestants().iter();
-    let structures = contestants.filter(|c| c.made_from().is_none());
+    let mut keep_reason = |contestant: &Contestant, refusal: &dyn Display| {
+        first_reason.get_or_insert(format!("{}: {refusal}", contestant.name()));
+    };
+    let (mut contestants, mut subjects) = (Vec::new(), Vec::new());
+    let structures = program.contestants().iter();
+    let structures = structures.filter(|c| c.made_from().is_none());
     for contestant in structures.filter(|c| settings.chooses(c) && is_local(c)) {
-        let mut prepared = match contestant.prepare(polygons) {
-            Ok(prepared) => machine.host(prepared, &counts),
-            Err(refusal) => {
-                first_reason.get_or_insert(format!("{}: {refusal}", contestant.name()));
-                continue;
+        match contestant.prepare(polygons) {
+            Ok(built) => {
+                contestants.push(contestant);
+                subjects.push(machine.host(built, &counts));
             }
-        };
-        let series = Series::once(clock).with_untimed(1);
-        let run = prepared.run(&Job::new(Task::Program), &series);
-        if let Some(refusal) = run.refusal {
-            first_reason.get_or_insert(format!("{}: {refusal}", contestant.name()));
-            continue;
-        }
-        let ns = run.time.ns();
-        if fastest.as_ref().is_none_or(|(least, ..)| ns < *least) {
-            fastest = Some((ns, contestant, prepared));
+            Err(refusal) => keep_reason(contestant, &refusal),
         }
     }
-    let Some((_, contestant, prepared)) = fastest else {
+    let run = |subject: usize| Entry {
+        pauses_clock: program.changes_mesh(),
+        ..Entry::of_task(subject, Task::Program, RUN)
+    };
+    let trial = Trial {
+        polygons,
+        counts,
+        skewed: false,
+        entries: (0..subjects.len()).map(run).collect(),
+        columns: Columns::without_control(subjects),
+        effort: bench.budget.share(1.0, SELECTION_SHARE),
+        named: true,
+        seed: settings.seed,
+    };
+    let measured = bench.measure(trial, &mut |_| ());
+    let times = measured.times.iter();
+    let times = times.map(|ns| ns.unwrap_or(f64::INFINITY));
+    let runs = contestants.into_iter().zip(&measured.entries);
+    let runs = runs.zip(measured.columns.subjects).zip(times);
+    let runs = runs.filter_map(
+        |(((contestant, entry), subject), ns)| match &entry.refusal {
+            None => Some((contestant, subject, ns)),
+            Some(refusal) => {
+                keep_reason(contestant, refusal);
+                None
+            }
+        },
+    );
+    let fastest = runs.min_by(|(.., a), (.., b)| a.total_cmp(b));
+    let Some((contestant, subject, _)) = fastest else {
         let none = || "no structure is left".to_owned();
         return Err(refused(first_reason.unwrap_or_else(none)));
     };
@@ -129,90 +156,85 @@ pub(crate) fn record_program_on(
             mesh: mesh(),
         }),
         Some(Err(refusal)) => Err(refused(refusal.to_string())),
-        Some(Ok(recording)) => {
-            let calibration = Calibration {
+        Some(Ok(mut recording)) => {
+            let run_ns = calibrate(
+                &mut recording,
                 study_mesh,
                 contestant,
-                seed: settings.seed,
-                effort: settings.effort,
-                machine,
-                stop,
-            };
-            Ok(calibration.measure(prepared, recording))
+                subject,
+                &mut bench,
+                &run,
+                settings.seed,
+            );
+            Ok(RecordedProgram {
+                structure: contestant.name(),
+                recording,
+                run_ns,
+            })
         }
     }
 }
 
-/// Measures a program, its trace and its workload on the structure on which it was recorded.
-struct Calibration<'c> {
-    study_mesh: &'c StudyMesh,
-    contestant: &'c Contestant,
+/// Measures a program, its trace and its workload on the structure on which it was recorded. Puts the
+/// program's own time into the trace and the workload, and returns the time of a run of the program in
+/// nanoseconds. `run` makes the entry for a run of a program on a subject.
+fn calibrate(
+    recording: &mut Recording,
+    study_mesh: &StudyMesh,
+    contestant: &Contestant,
+    program: Box<dyn TimedBackend + '_>,
+    bench: &mut Bench<'_>,
+    run: &dyn Fn(usize) -> Entry,
     seed: u64,
-    effort: Effort,
-    machine: &'c dyn Machine,
-    stop: &'c AtomicBool,
-}
+) -> f64 {
+    let polygons = &study_mesh.polygons;
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let traced = Suite::new().trace(recording.trace.clone());
+    let same = |c: &&Contestant| c.name() == contestant.name();
+    let trace = traced.programs().iter().flat_map(|p| p.contestants());
+    let trace = trace.filter(same).find_map(|c| c.prepare(polygons).ok());
+    let workload = &recording.workload;
+    let schedule = Schedule::new(workload, &counts);
+    let route = Route::new(workload.access, polygons, seed);
+    let draw = Draw::new(polygons, seed);
+    let backend = Backend::find(contestant.name()).filter(|_| !workload.mix.is_empty());
+    let mix = backend.and_then(|b| prepare_mix(&b, polygons, &draw, &schedule, &route).ok());
+    let operations = workload.operations_on(&counts);
 
-impl Calibration<'_> {
-    fn measure(
-        &self,
-        mut program: Box<dyn TimedBackend + '_>,
-        mut recording: Recording,
-    ) -> RecordedProgram {
-        let polygons = &self.study_mesh.polygons;
-        let clock = self.machine.clock();
-        let traced = Suite::new().trace(recording.trace.clone());
-        let same = |c: &&Contestant| c.name() == self.contestant.name();
-        let trace = traced.programs().iter().flat_map(|p| p.contestants());
-        let trace = trace.filter(same).find_map(|c| c.prepare(polygons).ok());
-        let counts = polygons.counts(self.study_mesh.facts.edges);
-        let mut trace = trace.map(|built| self.machine.host(built, &counts));
-        let schedule = Schedule::new(&recording.workload, &counts);
-        let route = Route::new(recording.workload.access, polygons, self.seed);
-        let draw = Draw::new(polygons, self.seed);
-        let backend = Backend::find(self.contestant.name());
-        let mix = backend.and_then(|b| prepare_mix(&b, polygons, &draw, &schedule, &route).ok());
-        let mix = mix.filter(|_| !recording.workload.mix.is_empty());
-        let mut mix = mix.map(|built| self.machine.host(built, &counts));
-        let operations = recording.workload.operations_on(&counts);
-
-        let mut times: [Vec<f64>; 3] = Default::default();
-        let budget = Budget::start(self.effort, clock);
-        let fixed = self.effort.rounds().map(|rounds| rounds.get() as usize);
-        let rounds = fixed.unwrap_or(MAX_ROUNDS);
-        let mut first = 0;
-        while times[0].len() < rounds.min(MIN_ROUNDS)
-            || (budget.left().limit_ns() > 0.0 && times[0].len() < rounds)
-        {
-            let once = Series::once(clock);
-            times[0].push(program.run(&Job::new(Task::Program), &once).time.ns());
-            if let Some(trace) = &mut trace {
-                times[1].push(trace.run(&Job::new(Task::Program), &once).time.ns());
-            }
-            if let Some(mix) = &mut mix {
-                let runs = (operations / 256.0).clamp(1.0, MAX_TURNS) as u32;
-                let series = Series::with_runs(runs, clock).with_result();
-                let job = Job {
-                    first,
-                    ..Job::new(Task::Mix)
-                };
-                let run = mix.run(&job, &series);
-                first += u64::from(runs);
-                let elements = run.outcome.map_or(1, |outcome| outcome.elements).max(1);
-                times[2].push(run.time.ns() / elements as f64);
-            }
-            if self.stop.load(Ordering::Relaxed) {
-                break;
-            }
-        }
-        let [run, trace, operation] = times.map(|times| Some(Median::from_samples(times)?.value));
-        let run_ns = run.unwrap_or(0.0);
-        recording.trace.own_ns = trace.map_or(0.0, |trace| run_ns - trace);
-        recording.workload.own_ns = operation.map_or(0.0, |ns| run_ns / operations - ns);
-        RecordedProgram {
-            structure: self.contestant.name(),
-            recording,
-            run_ns,
-        }
+    let mut subjects = vec![program];
+    let mut entries = vec![run(0)];
+    if let Some(trace) = trace {
+        entries.push(run(subjects.len()));
+        subjects.push(bench.machine.host(trace, &counts));
     }
+    let traced = entries.len() - 1;
+    if let Some(mix) = mix {
+        entries.push(Entry {
+            pauses_clock: schedule.edits().next().is_some(),
+            ..Entry::of_task(subjects.len(), Task::Mix, MIX)
+        });
+        subjects.push(bench.machine.host(mix, &counts));
+    }
+    let mixed = entries.len() - 1;
+    let trial = Trial {
+        polygons,
+        counts,
+        skewed: false,
+        columns: Columns::without_control(subjects),
+        entries,
+        effort: bench.budget.left(),
+        named: true,
+        seed,
+    };
+    let measured = bench.measure(trial, &mut |_| ());
+    let time = |entry: usize| measured.times[entry];
+    let run_ns = time(0).unwrap_or(0.0);
+    let own_ns = |ns: Option<f64>, run_ns: f64| ns.map_or(0.0, |ns| run_ns - ns);
+    let trace_ns = time(traced).filter(|_| traced > 0);
+    recording.trace.own_ns = own_ns(trace_ns, run_ns);
+    let done = measured.entries[mixed].outcome;
+    let done = done.filter(|_| mixed > traced);
+    let operation_ns = done.and_then(|done| Some(time(mixed)? / done.elements.max(1) as f64));
+    recording.workload.own_ns = own_ns(operation_ns, run_ns / operations);
+    run_ns
 }

@@ -2,6 +2,7 @@
 
 use sixfold::subdivision::Method;
 use sixfold::{PolygonMesh, shapes};
+use sixfold_results::Agreement;
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};

@@ -316,8 +316,7 @@ fn the_own_time_of_a_recorded_program_is_what_its_calls_do_not_take() {
         (Task::Mix, _) => 256.0 * 300.0,
         _ => 1000.0,
     };
-    for effort in [Effort::of_ms(100), Effort::of_rounds(2)] {
-        let machine = SimulatedMachine::with_costs(costs);
+    let record = |machine: SimulatedMachine, effort: Effort| {
         let settings = ProgramSettings {
             effort,
             ..ProgramSettings::default()
@@ -326,7 +325,17 @@ fn the_own_time_of_a_recorded_program_is_what_its_calls_do_not_take() {
         let recorded = record_program_on(&machine, &study_mesh, program, &settings, &stop);
         let recorded = recorded.expect("it can be recorded");
         assert_eq!(recorded.structure, "winged-edge", "the fastest");
-        assert_eq!(recorded.run_ns, 50_000.0);
+        recorded
+    };
+    // Neither drift nor jumps change which structure is the fastest, or the part of the own time.
+    for effort in [Effort::of_ms(1000), Effort::of_rounds(100)] {
+        let recorded = record(SimulatedMachine::with_costs(costs).drifting(), effort);
+        let own = recorded.recording.trace.own_ns / recorded.run_ns;
+        assert!((own - 0.16).abs() < 0.01, "{own}");
+    }
+    for effort in [Effort::of_ms(100), Effort::of_rounds(2)] {
+        let recorded = record(SimulatedMachine::with_costs(costs), effort);
+        assert!((recorded.run_ns - 50_000.0).abs() < 1e-6);
         assert!((recorded.recording.trace.own_ns - 8_000.0).abs() < 1e-6);
         // 120 vertices are queried in a run of 50 µs: 416.7 ns for each, of which a query takes 300.
         let own_ns = recorded.recording.workload.own_ns;

@@ -9,10 +9,6 @@ use sixfold_results::statistics::{Median, median};
 
 /// The measured entries of one task, which are compared with each other.
 pub(crate) struct Group<'g> {
-    /// The name of the task.
-    pub(crate) operation: &'g str,
-    /// The kind of the visited elements.
-    pub(crate) unit: &'g str,
     pub(crate) entries: &'g [Entry],
     /// The corrected time of each entry.
     pub(crate) times: &'g [Option<f64>],
@@ -59,16 +55,16 @@ impl Group<'_> {
             let interval = time.and_then(|time| time.interval);
             let ratio = rank.and_then(|rank| rank.ratio.interval);
             Some(ResultRow {
-                case: String::new(),
+                case: entry.case.into(),
                 backend: subjects[entry.subject].name().into(),
-                operation: self.operation.into(),
+                operation: entry.name.into(),
                 median_ns: time.map(|time| time.value),
                 uncorrected_ns: median(samples.iter().map(|(_, time)| time.ns()).collect()),
                 min_ns: time.map(|time| time.least),
                 ci_low_ns: interval.map(|[low, _]| low),
                 ci_high_ns: interval.map(|[_, high]| high),
                 elements,
-                per: self.unit.into(),
+                per: entry.per.into(),
                 ns_per_element: time.and_then(|time| per_element(time.value)),
                 wall_median_ns: wall.map(|wall| wall.value),
                 wall_min_ns: wall.map(|wall| wall.least),
