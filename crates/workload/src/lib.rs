@@ -17,6 +17,7 @@ mod memory_speed;
 mod mix;
 mod operation;
 pub mod pages;
+mod passes;
 mod program;
 mod read_probe;
 mod reads;

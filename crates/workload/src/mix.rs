@@ -8,7 +8,6 @@
 //! between turns.
 
 mod own_data;
-mod passes;
 mod places;
 mod route;
 mod route_handles;

@@ -6,10 +6,11 @@ use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
 use crate::backend::Backend;
 use crate::draw::{Draw, Side};
-use crate::job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
+use crate::job::{ElementSample, Job, Run, Task, TimedBackend};
 use crate::operation::{ElementKind, Operation, build, edit_pass, subdivision, vv_smooth};
+use crate::passes::{outcome, run_whole};
 use crate::series::{Series, Start, exceeds_second_level};
-use crate::sweeps::{All, Elements, Outputs, SweepResult};
+use crate::sweeps::{Elements, Outputs, SweepResult};
 use sixfold_results::Time;
 
 /// A structure built from `polygons`, with storage for outputs and with handles of the drawn
@@ -45,19 +46,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
     fn run_whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         fill_caches(&self.mesh, series);
         fill_caches_with_outputs(&self.mesh, &self.outputs, series);
-        let mut results = [SweepResult::default(); 3];
-        let time = series.time_together(|| {
-            for kind in operation.kinds() {
-                let mesh = black_box(&self.mesh);
-                results[kind.index()] =
-                    black_box(operation.sweep(kind, mesh, &All, &mut self.outputs));
-            }
-            black_box(&mut self.outputs);
-        });
-        let outcome = series
-            .check
-            .then(|| self.outcome(operation, &All, results, [1.0; 3]));
-        Run::done(time, outcome)
+        run_whole(&self.mesh, &mut self.outputs, operation, series)
     }
 
     fn run_sampled(
@@ -105,37 +94,11 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
             let moving = vv_smooth::time_moving(&self.mesh, &self.outputs.vertices, series);
             total = total.plus(moving);
         }
+        let (mesh, outputs) = (&self.mesh, &self.outputs);
         let outcome = series
             .check
-            .then(|| self.outcome(operation, &elements, results, scale));
+            .then(|| outcome(mesh, outputs, operation, &elements, results, scale));
         Run::done(total, outcome)
-    }
-
-    fn outcome<E: Elements<M>>(
-        &self,
-        operation: Operation,
-        elements: &E,
-        results: [SweepResult; 3],
-        scale: [f64; 3],
-    ) -> Outcome {
-        let mesh = &self.mesh;
-        let mut sum = SweepResult::default();
-        results.into_iter().for_each(|result| sum.add(result));
-        let checksum = operation.checksum(mesh, elements, &self.outputs, sum);
-        let unit = operation.description().unit.element();
-        let scaled = |kind: ElementKind, number: u64| number as f64 * scale[kind.index()];
-        let visited = match unit {
-            Some(kind) => scaled(kind, results[kind.index()].elements),
-            None => ElementKind::ALL
-                .map(|kind| scaled(kind, results[kind.index()].count))
-                .into_iter()
-                .sum(),
-        };
-        Outcome {
-            checksum,
-            elements: visited.round() as u64,
-            refused: 0,
-        }
     }
 }
 

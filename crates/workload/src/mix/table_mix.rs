@@ -9,13 +9,13 @@ use sixfold_relation_table::Numbering;
 use crate::backend::Backend;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::mix::own_data::OwnMemory;
-use crate::mix::passes::pass_over;
 use crate::mix::route::Route;
 use crate::mix::route_handles::RouteHandles;
 use crate::mix::runs::{Counts, time_part, time_turns};
 use crate::mix::schedule::Schedule;
 use crate::mix::{MixBackend, NO_PROGRAM};
 use crate::operation::Operation;
+use crate::passes::run_whole;
 use crate::series::Series;
 use crate::sweeps::Outputs;
 use crate::tables::{TABLE_TYPE, TABLES, Tables, time_building};
@@ -111,17 +111,22 @@ impl TableMix<'_> {
     }
 
     fn run_pass(&mut self, operation: Operation, series: &Series<'_>) -> Run {
-        let run = pass_over(&self.tables, &mut self.outputs, operation, series);
-        if operation != Operation::VvSmooth {
-            return run;
+        let Self {
+            tables,
+            moved,
+            outputs,
+            ..
+        } = self;
+        let mut run = run_whole(tables, outputs, operation, series);
+        if operation == Operation::VvSmooth {
+            // Writes to a copy, so that the mesh keeps its positions.
+            let moving = series.time_together(|| {
+                moved.copy_from_slice(black_box(outputs.vertices.values()));
+                black_box(&mut *moved);
+            });
+            run.time = run.time.plus(moving);
         }
-        // Writes to a copy, so that the mesh keeps its positions.
-        let Self { moved, outputs, .. } = self;
-        let swap = series.time_together(|| {
-            moved.copy_from_slice(black_box(outputs.vertices.values()));
-            black_box(&mut *moved);
-        });
-        let time = run.time.plus(swap.scaled(1.0 / f64::from(series.runs)));
+        let time = run.time.scaled(1.0 / f64::from(series.runs));
         Run { time, ..run }
     }
 }

@@ -9,7 +9,7 @@ use sixfold::{FaceVertexMesh, PolygonMesh, QueryCost, Relation, Representation};
 use super::Program;
 use super::forms::Queries;
 use super::recorded::Recorded;
-use super::subject::{ProgramRefusal, checked, guarded, message, record};
+use super::subject::{ONLY_WHOLE, ProgramRefusal, message, record, run_program};
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::operation::Operation;
 use crate::series::Series;
@@ -105,14 +105,10 @@ impl<P: Program> TimedBackend for OnTables<'_, P> {
     }
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
-        let run = match job.task {
-            Task::Operation(Operation::Build) => Ok(self.build(series)),
-            Task::Program => guarded(|| self.run_program(series)),
-            _ => Err("a program runs only as a whole".into()),
-        };
-        match run.and_then(checked) {
-            Ok((time, outcome)) => Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome),
-            Err(reason) => Run::refused(reason, series),
+        match job.task {
+            Task::Operation(Operation::Build) => run_program(series, || Ok(self.build(series))),
+            Task::Program => run_program(series, || Ok(self.run_program(series))),
+            _ => Run::refused(ONLY_WHOLE.into(), series),
         }
     }
 }

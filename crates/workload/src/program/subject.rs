@@ -148,32 +148,39 @@ impl<F: Form> TimedBackend for Subject<'_, F> {
     }
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
-        let run = match job.task {
-            Task::Operation(Operation::Build) => Ok(self.build(series)),
-            Task::Program => guarded(|| self.run_program(series)).unwrap_or_else(Err),
-            _ => Err("a program runs only as a whole".into()),
-        };
-        match run.and_then(checked) {
-            Ok((time, outcome)) => Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome),
-            Err(reason) => Run::refused(reason, series),
+        match job.task {
+            Task::Operation(Operation::Build) => run_program(series, || Ok(self.build(series))),
+            Task::Program => run_program(series, || self.run_program(series)),
+            _ => Run::refused(ONLY_WHOLE.into(), series),
         }
     }
 }
 
-/// Refuses a result that cannot be compared, or that shows that nothing was done.
-pub(super) fn checked(
-    (time, outcome): (Time, Option<Outcome>),
-) -> Result<(Time, Option<Outcome>), String> {
-    match outcome {
-        Some(outcome) if !outcome.checksum.is_finite() => Err(format!(
+/// Why a part of a program is refused.
+pub(super) const ONLY_WHOLE: &str = "a program runs only as a whole";
+
+/// Runs `work`, which returns the time of all runs of `series` and the result. Refuses a program that
+/// panics, a result that cannot be compared, and one that shows that nothing was done.
+pub(super) fn run_program(
+    series: &Series<'_>,
+    work: impl FnOnce() -> Result<(Time, Option<Outcome>), String>,
+) -> Run {
+    let done = catch_unwind(AssertUnwindSafe(work));
+    let done = done.map_err(|panic| format!("the program panicked: {}", message(panic.as_ref())));
+    let refused = match done.and_then(|done| done) {
+        Err(reason) => reason,
+        Ok((_, Some(outcome))) if !outcome.checksum.is_finite() => format!(
             "the checksum of the program is {}, so the results cannot be compared",
             outcome.checksum
-        )),
-        Some(outcome) if outcome.elements == 0 => {
-            Err("the program counted no work, so there is nothing to measure".into())
+        ),
+        Ok((_, Some(outcome))) if outcome.elements == 0 => {
+            "the program counted no work, so there is nothing to measure".into()
         }
-        _ => Ok((time, outcome)),
-    }
+        Ok((time, outcome)) => {
+            return Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome);
+        }
+    };
+    Run::refused(refused, series)
 }
 
 fn set_up<F: Form>(
@@ -227,12 +234,7 @@ pub(super) struct RecordedRun {
     pub(super) taped: Option<TapedRun>,
 }
 
-/// Returns the message of a panic as an error.
-pub(super) fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    catch_unwind(AssertUnwindSafe(work))
-        .map_err(|panic| format!("the program panicked: {}", message(panic.as_ref())))
-}
-
+/// Returns the message of a panic.
 pub(super) fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());

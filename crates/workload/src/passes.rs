@@ -1,0 +1,59 @@
+//! Passes of an operation over a mesh, and their results.
+
+use std::hint::black_box;
+
+use sixfold::MeshQuery;
+
+use crate::job::{Outcome, Run};
+use crate::operation::{ElementKind, Operation};
+use crate::series::Series;
+use crate::sweeps::{All, Elements, Outputs, SweepResult};
+
+/// Runs `operation` over all of `mesh` as `series` describes. Returns the time of all runs.
+pub(crate) fn run_whole<M: MeshQuery>(
+    mesh: &M,
+    outputs: &mut Outputs<M>,
+    operation: Operation,
+    series: &Series<'_>,
+) -> Run {
+    let mut results = [SweepResult::default(); 3];
+    let time = series.time_together(|| {
+        for kind in operation.kinds() {
+            let result = operation.sweep(kind, black_box(mesh), &All, outputs);
+            results[kind.index()] = black_box(result);
+        }
+        black_box(&mut *outputs);
+    });
+    let check = series.check;
+    let outcome = check.then(|| outcome(mesh, outputs, operation, &All, results, [1.0; 3]));
+    Run::done(time, outcome)
+}
+
+/// Returns the result of a pass over `elements`. `results` are those of the kinds of elements, and
+/// `scale` is the number of all elements of a kind, divided by the number of visited ones.
+pub(crate) fn outcome<M: MeshQuery, E: Elements<M>>(
+    mesh: &M,
+    outputs: &Outputs<M>,
+    operation: Operation,
+    elements: &E,
+    results: [SweepResult; 3],
+    scale: [f64; 3],
+) -> Outcome {
+    let mut sum = SweepResult::default();
+    results.into_iter().for_each(|result| sum.add(result));
+    let checksum = operation.checksum(mesh, elements, outputs, sum);
+    let unit = operation.description().unit.element();
+    let scaled = |kind: ElementKind, number: u64| number as f64 * scale[kind.index()];
+    let visited = match unit {
+        Some(kind) => scaled(kind, results[kind.index()].elements),
+        None => {
+            let kinds = ElementKind::ALL.into_iter();
+            kinds.map(|k| scaled(k, results[k.index()].count)).sum()
+        }
+    };
+    Outcome {
+        checksum,
+        elements: visited.round() as u64,
+        refused: 0,
+    }
+}
