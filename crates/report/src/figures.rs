@@ -484,10 +484,7 @@ pub(crate) fn machine(environment: &Environment) -> String {
         Some(commit) => format!("Sixfold {sixfold} ({commit})"),
         None => format!("Sixfold {sixfold}"),
     });
-    parts.push(match clock.as_str() {
-        "thread-cpu" => "processor time of the thread".into(),
-        _ => "wall time".into(),
-    });
+    parts.push(clock.words().into());
     parts.extend(environment.memory_phrases());
     let parts: Vec<String> = parts.iter().map(|part| part.trim().to_owned()).collect();
     parts.join("; ")

@@ -377,7 +377,7 @@ fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
             ("features", e.features.join(", ")),
             ("sixfold", e.sixfold.clone()),
             ("commit", shown(e.commit.as_ref())),
-            ("clock", e.clock.clone()),
+            ("clock", e.clock.to_string()),
             ("allocator", shown(heap(e).as_ref())),
             ("budget", run.settings.effort_text()),
             ("seed", run.settings.seed.to_string()),

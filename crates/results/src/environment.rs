@@ -16,11 +16,11 @@ pub struct Environment {
     pub rustc: String,
     /// Build profile: `release`, `dist` (with link-time optimisation) or `debug`.
     pub profile: String,
-    /// Optimisation level: `0` to `3`, `s` or `z`.
+    /// Optimisation level of the timed code: `0` to `3`, `s` or `z`.
     pub opt_level: String,
     /// Additional flags of the Rust compiler.
     pub rustflags: String,
-    /// The cargo features with which `sixfold-study` was built. Empty if it was built without features.
+    /// The cargo features with which `sixfold-workload` was built. Empty if it was built without features.
     pub features: Vec<String>,
     /// Target triple of the build.
     pub target: String,
@@ -42,9 +42,8 @@ pub struct Environment {
     pub governor: Option<String>,
     /// True if the processor may exceed its nominal frequency for a short time; `None` if unknown.
     pub boost: Option<bool>,
-    /// Clock that measured the times: `thread-cpu` (processor time of the thread) or `wall`
-    /// (elapsed time).
-    pub clock: String,
+    /// Clock that measured the times.
+    pub clock: ClockKind,
     /// The allocator, and what happens to freed memory pages; `None` if nothing was timed.
     pub heap: Option<HeapReport>,
     /// How the caches were prepared before each sample; `None` if nothing was timed.
@@ -87,6 +86,28 @@ impl Environment {
             .as_ref()
             .map_or(CacheState::Warm, |c| c.state);
         [heap.name(), caches.name()]
+    }
+}
+
+sixfold_core::named! {
+    /// A clock that measures times.
+    #[derive(Default)]
+    pub enum ClockKind: "clock" {
+        /// The processor time of the measuring thread.
+        ThreadCpu = "thread-cpu",
+        /// The elapsed time.
+        #[default]
+        Wall = "wall",
+    }
+}
+
+impl ClockKind {
+    /// Returns what the clock measures, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::ThreadCpu => "processor time of the thread",
+            Self::Wall => "wall time",
+        }
     }
 }
 

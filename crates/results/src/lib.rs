@@ -39,7 +39,7 @@ pub use corrected::corrected_times;
 pub use csv::write_csv_rows;
 pub use document::{Failed, FailureKind, Results, SCHEMA};
 pub use environment::{
-    Cache, CacheState, CachesReport, Environment, HeapReport, Policy, last_level_bytes,
+    Cache, CacheState, CachesReport, ClockKind, Environment, HeapReport, Policy, last_level_bytes,
 };
 pub use figure::{Counted, Figure, Status};
 pub use finding::Finding;

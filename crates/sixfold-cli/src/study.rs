@@ -184,10 +184,7 @@ pub(crate) fn describe_run(run: &Run, most_rounds: usize) -> String {
     parts.extend(cores.map(|cores| counted(cores, "core", "cores")));
     parts.extend(load_average.map(|load| format!("load {load:.2} at the start")));
     parts.push(format!("{rustc}, {profile}"));
-    parts.push(match clock.as_str() {
-        "thread-cpu" => "processor time of the thread".into(),
-        _ => "wall time".into(),
-    });
+    parts.push(clock.words().into());
     parts.extend(run.environment.memory_phrases());
     let rounds = counted(most_rounds, "round", "rounds");
     parts.push(format!("medians of up to {rounds}"));

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use sixfold_results::Time;
+use sixfold_results::{ClockKind, Time};
 
 use crate::pages;
 
@@ -88,12 +88,11 @@ impl MachineClock {
         }
     }
 
-    /// Returns the name of the clock that studies use: `thread-cpu` (processor time) or `wall`
-    /// (wall time).
-    pub fn name() -> &'static str {
+    /// Returns the clock that studies use.
+    pub fn kind() -> ClockKind {
         match thread_cpu_ns() {
-            Some(_) => "thread-cpu",
-            None => "wall",
+            Some(_) => ClockKind::ThreadCpu,
+            None => ClockKind::Wall,
         }
     }
 }
@@ -172,7 +171,10 @@ mod tests {
             }
         });
         assert!(time.wall_ns > 0.0);
-        assert_eq!(time.cpu_ns.is_some(), MachineClock::name() == "thread-cpu");
+        assert_eq!(
+            time.cpu_ns.is_some(),
+            MachineClock::kind() == ClockKind::ThreadCpu
+        );
         assert!(time.ns() > 0.0);
     }
 

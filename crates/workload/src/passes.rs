@@ -39,21 +39,24 @@ pub(crate) fn outcome<M: MeshQuery, E: Elements<M>>(
     results: [SweepResult; 3],
     scale: [f64; 3],
 ) -> Outcome {
-    let mut sum = SweepResult::default();
-    results.into_iter().for_each(|result| sum.add(result));
-    let checksum = operation.checksum(mesh, elements, outputs, sum);
-    let unit = operation.description().unit.element();
+    let checksum = operation.checksum(mesh, elements, outputs, SweepResult::sum_of(results));
+    Outcome {
+        checksum,
+        elements: elements_of_all(operation, results, scale),
+        refused: 0,
+    }
+}
+
+/// Returns the number of elements that a pass over the whole mesh visits, or of its results if they are
+/// the unit of the operation.
+fn elements_of_all(operation: Operation, results: [SweepResult; 3], scale: [f64; 3]) -> u64 {
     let scaled = |kind: ElementKind, number: u64| number as f64 * scale[kind.index()];
-    let visited = match unit {
+    let visited = match operation.description().unit.element() {
         Some(kind) => scaled(kind, results[kind.index()].elements),
         None => {
             let kinds = ElementKind::ALL.into_iter();
             kinds.map(|k| scaled(k, results[k.index()].count)).sum()
         }
     };
-    Outcome {
-        checksum,
-        elements: visited.round() as u64,
-        refused: 0,
-    }
+    visited.round() as u64
 }

@@ -74,6 +74,12 @@ pub(crate) struct SweepResult {
 }
 
 impl SweepResult {
+    pub(crate) fn sum_of(results: [Self; 3]) -> Self {
+        let mut sum = Self::default();
+        results.into_iter().for_each(|result| sum.add(result));
+        sum
+    }
+
     pub(crate) fn add(&mut self, other: Self) {
         self.elements += other.elements;
         self.count += other.count;

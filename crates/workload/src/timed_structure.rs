@@ -65,15 +65,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         };
         self.drawn
             .extend_to(&self.mesh, self.polygons, draw, sample.size);
-        let population = draw.population();
-        let size = population.map(|all| all.min(sample.size));
-        let mut scale = [1.0; 3];
-        for kind in ElementKind::ALL {
-            let k = kind.index();
-            if sample.scanned[k] && size[k] > 0 {
-                scale[k] = population[k] as f64 / size[k] as f64;
-            }
-        }
+        let (size, scale) = sizes_and_scales(draw, sample);
         let elements = SampledElements {
             drawn: &self.drawn,
             scanned: sample.scanned,
@@ -149,6 +141,20 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
             ..run
         }
     }
+}
+
+/// Returns, for each kind of elements, how many a sample visits, and the number of all elements divided
+/// by this number.
+fn sizes_and_scales(draw: &Draw, sample: ElementSample) -> ([usize; 3], [f64; 3]) {
+    let population = draw.population();
+    let size = population.map(|all| all.min(sample.size));
+    let mut scale = [1.0; 3];
+    for k in 0..3 {
+        if sample.scanned[k] && size[k] > 0 {
+            scale[k] = population[k] as f64 / size[k] as f64;
+        }
+    }
+    (size, scale)
 }
 
 /// Reads every table of `mesh`, if runs start with warm caches and the mesh is larger than the

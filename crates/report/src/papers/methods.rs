@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 use sixfold_results::numbers::{bytes, counted, grouped};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{
-    CacheState, Environment, Figure as TimeRow, Finding, Policy, Report, Results, Run, Status,
+    CacheState, ClockKind, Environment, Figure as TimeRow, Finding, Policy, Report, Results, Run,
+    Status,
 };
 
 use crate::data::dates;
@@ -310,9 +311,9 @@ fn build(environment: &Environment) -> String {
 /// The clock, the heap and the caches.
 fn memory(results: &Results) -> Vec<String> {
     let clock = by_run(results, |run| {
-        Some(match run.environment.clock.as_str() {
-            "thread-cpu" => "the processor time of the measuring thread".into(),
-            _ => "the wall time".into(),
+        Some(match run.environment.clock {
+            ClockKind::ThreadCpu => "the processor time of the measuring thread".into(),
+            ClockKind::Wall => "the wall time".into(),
         })
     });
     let heap = by_run(results, |run| {

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use sixfold_results::{Environment, Run, RunSettings, Start};
-use sixfold_workload::{MachineClock, Operation, caches};
+use sixfold_workload::{COMPILATION, MachineClock, Operation, caches};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// Describes a measurement that begins now.
@@ -40,15 +40,15 @@ fn environment() -> Environment {
     Environment {
         sixfold: env!("CARGO_PKG_VERSION").into(),
         commit: option_env!("STUDY_COMMIT").map(str::to_owned),
-        rustc: env!("STUDY_RUSTC").into(),
-        profile: env!("STUDY_PROFILE").into(),
-        opt_level: env!("STUDY_OPT_LEVEL").into(),
-        rustflags: env!("STUDY_RUSTFLAGS").into(),
-        features: env!("STUDY_FEATURES")
+        rustc: COMPILATION.rustc.into(),
+        profile: COMPILATION.profile.into(),
+        opt_level: COMPILATION.opt_level.into(),
+        rustflags: COMPILATION.rustflags.into(),
+        features: (COMPILATION.features)
             .split_terminator(',')
             .map(str::to_owned)
             .collect(),
-        target: env!("STUDY_TARGET").into(),
+        target: COMPILATION.target.into(),
         os: std::env::consts::OS.into(),
         kernel: System::kernel_version(),
         arch: std::env::consts::ARCH.into(),
@@ -58,7 +58,7 @@ fn environment() -> Environment {
         memory_bytes: Some(system.total_memory()).filter(|&bytes| bytes > 0),
         governor: line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
         boost: boost(),
-        clock: MachineClock::name().into(),
+        clock: MachineClock::kind(),
         heap: None,
         cache_state: None,
     }

@@ -2,7 +2,9 @@
 
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::statistics::{DISTURBED, median};
-use sixfold_results::{Control, Environment, Policy, ResultRow, Run, RunSettings, Samples, Timer};
+use sixfold_results::{
+    ClockKind, Control, Environment, Policy, ResultRow, Run, RunSettings, Samples, Timer,
+};
 
 /// Maximum share of disturbed samples on a quiet machine.
 const FEW_DISTURBED: f64 = 0.1;
@@ -158,7 +160,7 @@ fn coarse(timer: &Timer) -> Option<String> {
 }
 
 fn wall_time_only(environment: &Environment) -> Option<String> {
-    (environment.clock == "wall").then(|| {
+    (environment.clock == ClockKind::Wall).then(|| {
         "This platform does not report the processor time of a thread, so the figures are wall \
          time. Other programs make wall time longer: keep the machine quiet."
             .to_owned()
@@ -238,7 +240,7 @@ mod tests {
         run.environment = Environment {
             cores: Some(2),
             governor: Some("performance".into()),
-            clock: "thread-cpu".into(),
+            clock: ClockKind::ThreadCpu,
             ..Environment::default()
         };
         run
@@ -324,7 +326,7 @@ mod tests {
             shortest_ns: Some(2000.0),
             ..TIMER
         };
-        let wall = with(|environment| environment.clock = "wall".into());
+        let wall = with(|environment| environment.clock = ClockKind::Wall);
         let powersave = with(|environment| environment.governor = Some("powersave".into()));
         let mut busy = undisturbed();
         busy.slowdowns = [1.0, 1.4, 1.3, 1.0, 1.0, 1.0].into();

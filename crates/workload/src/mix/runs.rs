@@ -23,8 +23,10 @@ pub(crate) fn run_turns(
         for part in 0..parts {
             let range = range_of(part, turn);
             if !range.is_empty() {
-                let counts = run_range(part, range);
-                sums = std::array::from_fn(|i| sums[i] + counts[i]);
+                let [operations, results, refused] = run_range(part, range);
+                sums[0] += operations;
+                sums[1] += results;
+                sums[2] += refused;
             }
         }
     }

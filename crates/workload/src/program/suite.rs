@@ -236,6 +236,12 @@ impl SuiteProgram {
         self.kind.name()
     }
 
+    /// Returns whether a run can be recorded: the calls of a program that walks along sides, or that
+    /// refines the mesh, are not part of a trace.
+    pub fn can_be_recorded(&self) -> bool {
+        !matches!(self.kind, ProgramKind::Walks | ProgramKind::Refines)
+    }
+
     /// Returns true if a run changes the mesh, so that each run needs a fresh copy.
     pub fn changes_mesh(&self) -> bool {
         matches!(self.kind, ProgramKind::Moves | ProgramKind::Edits)

@@ -86,7 +86,7 @@ pub(crate) fn record_program_on(
 ) -> Result<RecordedProgram, RecordError> {
     let name = || program.name().to_owned();
     let mesh = || study_mesh.name.clone();
-    if matches!(program.kind(), "refines" | "walks") {
+    if !program.can_be_recorded() {
         return Err(RecordError::Kind {
             program: name(),
             kind: program.kind(),
