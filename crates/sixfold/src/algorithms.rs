@@ -16,6 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::any::Any;
 use std::ops::ControlFlow;
 
 use sixfold_core::{
@@ -24,7 +25,8 @@ use sixfold_core::{
 };
 use sixfold_operators::{DualError, Smoothing, SmoothingError, dual, smoothed};
 use sixfold_remeshing::{
-    Decimated, Decimation, RemeshError, Remeshed, Remeshing, decimate_watched, remesh_watched,
+    Decimated, Decimation, RemeshError, Remeshed, Remeshing, decimate, decimate_watched,
+    remesh_watched,
 };
 use sixfold_subdivision::{
     LocalError, LocalMesh, Method, Selection, Step, Subdivision, SubdivisionError, build_level,
@@ -272,7 +274,13 @@ impl<M: Refine> NativeLevels for Levels<M> {
 }
 
 type Build = fn(&PolygonMesh) -> Result<Box<dyn AnyMesh>, BuildError>;
-type BuildEditable = fn(&PolygonMesh) -> Result<Box<dyn AnyEditableMesh>, BuildError>;
+
+/// The functions for edits.
+#[derive(Clone, Copy)]
+struct Editing {
+    build: fn(&PolygonMesh) -> Result<Box<dyn AnyEditableMesh>, BuildError>,
+    decimate: fn(&mut dyn Any, &Decimation) -> Option<Result<Decimated, RemeshError>>,
+}
 
 /// The functions for native subdivision.
 #[derive(Clone, Copy)]
@@ -295,7 +303,7 @@ struct Native {
 pub struct Algorithms {
     structure: &'static str,
     build: Build,
-    build_editable: Option<BuildEditable>,
+    editing: Option<Editing>,
     native: Option<Native>,
 }
 
@@ -306,7 +314,7 @@ impl Algorithms {
         Self {
             structure: M::NAME,
             build: |polygons| Ok(Box::new(M::from_polygons(polygons)?)),
-            build_editable: None,
+            editing: None,
             native: None,
         }
     }
@@ -314,8 +322,12 @@ impl Algorithms {
     /// Adds the algorithms that edit `M`, the editable form of the structure.
     #[must_use]
     pub const fn with_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
+        let editing = Editing {
+            build: |polygons| Ok(Box::new(M::from_polygons(polygons)?)),
+            decimate: |mesh, decimation| Some(decimate(mesh.downcast_mut::<M>()?, decimation)),
+        };
         Self {
-            build_editable: Some(|polygons| Ok(Box::new(M::from_polygons(polygons)?))),
+            editing: Some(editing),
             ..self
         }
     }
@@ -381,7 +393,22 @@ impl Algorithms {
         &self,
         polygons: &PolygonMesh,
     ) -> Option<Result<Box<dyn AnyEditableMesh>, BuildError>> {
-        Some(self.build_editable?(polygons))
+        Some((self.editing?.build)(polygons))
+    }
+
+    /// Decimates `mesh`, whose type is known to the caller. The compiled code is in the crate that made
+    /// these algorithms, so a generic caller does not compile the decimation again. Returns `None` if the
+    /// type of `mesh` is not the editable form of the structure.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the options are invalid or a face is not a triangle.
+    pub fn decimate(
+        &self,
+        mesh: &mut dyn Any,
+        decimation: &Decimation,
+    ) -> Option<Result<Decimated, RemeshError>> {
+        (self.editing?.decimate)(mesh, decimation)
     }
 
     /// Builds the structure from the polygons of the level before the step `level`.

@@ -65,9 +65,9 @@ pub(crate) struct QueryFunctions {
 #[derive(Clone, Copy)]
 pub(crate) struct EditFunctions {
     pub(crate) prepare_mix: for<'a> fn(&MixInput<'a>) -> PreparedMix<'a>,
-    pub(crate) prepare_pass: fn(EditPass, &PolygonMesh) -> PreparedEditor,
+    pub(crate) prepare_pass: fn(EditPass, &Algorithms, &PolygonMesh) -> PreparedEditor,
     pub(crate) prepare_single: fn(SingleEdit, &PolygonMesh) -> PreparedEditor,
-    pub(crate) decimated_counts: fn(&PolygonMesh, f64) -> Option<Counts>,
+    pub(crate) decimated_counts: fn(&Algorithms, &PolygonMesh, f64) -> Option<Counts>,
 }
 
 /// Builds the structure and prepares it for measurement.
@@ -117,6 +117,14 @@ impl Backend {
     /// Adds edits to the backend. `M` is the editable type of the structure.
     #[must_use]
     pub fn with_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
+        Self {
+            algorithms: self.algorithms.with_edits::<M>(),
+            ..self.with_measured_edits::<M>()
+        }
+    }
+
+    /// Adds the edits of `M`, without compiling its algorithms.
+    fn with_measured_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
         let edits = EditFunctions {
             prepare_mix: prepare_edit_mix::<M>,
             prepare_pass: prepare_pass::<M>,
@@ -150,7 +158,7 @@ impl Backend {
                     let algorithms = Algorithms::find(<$query as Representation>::NAME);
                     let algorithms = algorithms.expect("the list of algorithms has every structure");
                     let backend = Backend::with_algorithms::<$query>(algorithms);
-                    $(let backend = backend.with_edits::<$edit>();)?
+                    $(let backend = backend.with_measured_edits::<$edit>();)?
                     $(let backend = Backend {
                         info: backend.info.with_refinement::<$refine>(),
                         ..backend

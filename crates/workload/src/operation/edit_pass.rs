@@ -1,6 +1,7 @@
 //! Passes of edits over a whole mesh, on one structure, and what studies know about them.
 
-use sixfold::remeshing::{Decimation, Target, decimate};
+use sixfold::algorithms::Algorithms;
+use sixfold::remeshing::{Decimation, Target};
 use sixfold::{
     Counts, EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Relation, Representation,
 };
@@ -93,7 +94,11 @@ impl EditPass {
     ///
     /// Returns the reason if the structure cannot hold `polygons` or if a face is not a triangle.
     pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
-        Some((backend.edits?.prepare_pass)(self, polygons))
+        Some((backend.edits?.prepare_pass)(
+            self,
+            &backend.algorithms,
+            polygons,
+        ))
     }
 }
 
@@ -102,6 +107,7 @@ pub type PreparedEditor = Result<Box<dyn Editor>, String>;
 
 pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
     pass: EditPass,
+    algorithms: &Algorithms,
     polygons: &PolygonMesh,
 ) -> PreparedEditor {
     if let Some((f, degree)) = polygons.first_polygon() {
@@ -112,6 +118,7 @@ pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
     let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
     Ok(Box::new(EditPassRun {
         pass,
+        algorithms: *algorithms,
         edges: match pass {
             EditPass::FlipAll => edges_in_face_order(&mesh),
             _ => Vec::new(),
@@ -163,6 +170,8 @@ impl Edits {
 
 struct EditPassRun<M: MeshEdit> {
     pass: EditPass,
+    /// The compiled decimation.
+    algorithms: Algorithms,
     mesh: M,
     /// The edges to flip, in order.
     edges: Vec<M::Edge>,
@@ -180,6 +189,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for EditPassRun<M> {
     fn time(&mut self, series: &Series<'_>) -> Time {
         let Self {
             pass,
+            algorithms,
             mesh,
             edges,
             copies,
@@ -203,7 +213,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for EditPassRun<M> {
             |copy| {
                 copy.edits = match (pass.ratio(), &mut copy.edges) {
                     (_, Some(edges)) => flip_all(&mut copy.mesh, edges),
-                    (Some(ratio), None) => decimate_to(&mut copy.mesh, ratio),
+                    (Some(ratio), None) => decimate_to(&mut copy.mesh, algorithms, ratio),
                     (None, None) => split_collapse(&mut copy.mesh),
                 };
             },
@@ -277,13 +287,13 @@ fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
 }
 
 #[inline(never)]
-fn decimate_to<M: Representation + MeshEdit>(mesh: &mut M, ratio: f64) -> Edits {
+fn decimate_to<M: MeshEdit + 'static>(mesh: &mut M, algorithms: &Algorithms, ratio: f64) -> Edits {
     let elements = mesh.face_count() as u64;
     let job = Decimation {
         target: Target::Ratio(ratio),
         ..Decimation::default()
     };
-    let done = decimate(mesh, &job);
+    let done = algorithms.decimate(mesh, &job).and_then(Result::ok);
     Edits {
         elements,
         done: done.as_ref().map_or(0, |done| done.collapses as u64),
@@ -424,13 +434,15 @@ pub(crate) fn counts_after(
         return *before;
     };
     let edits = backend.edits;
-    let counts = edits.and_then(|edits| (edits.decimated_counts)(polygons, ratio));
+    let counts =
+        edits.and_then(|edits| (edits.decimated_counts)(&backend.algorithms, polygons, ratio));
     counts.unwrap_or(*before)
 }
 
 /// Returns the counts of the mesh after decimation to `ratio` of its faces; `None` if the
 /// decimation is refused.
-pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
+pub(crate) fn decimated_counts<M: Representation + MeshEdit + 'static>(
+    algorithms: &Algorithms,
     polygons: &PolygonMesh,
     ratio: f64,
 ) -> Option<Counts> {
@@ -439,6 +451,6 @@ pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
         target: Target::Ratio(ratio),
         ..Decimation::default()
     };
-    decimate(&mut mesh, &job).ok()?;
+    algorithms.decimate(&mut mesh, &job)?.ok()?;
     Some(mesh.to_polygons().counts(mesh.edges().count()))
 }
