@@ -145,10 +145,15 @@ pub(crate) struct Sink {
 impl Sink {
     #[inline(always)]
     pub(crate) fn with<H: Handle>(self, handles: impl IntoIterator<Item = H>) -> Self {
-        handles.into_iter().fold(self, |sink, handle| Self {
-            count: sink.count + 1,
-            tokens: sink.tokens.wrapping_add(token(handle)),
-        })
+        handles.into_iter().fold(self, Self::with_one)
+    }
+
+    #[inline(always)]
+    pub(crate) fn with_one<H: Handle>(self, handle: H) -> Self {
+        Self {
+            count: self.count + 1,
+            tokens: self.tokens.wrapping_add(token(handle)),
+        }
     }
 
     /// Returns the number of handles. `black_box` makes the compiler compute all handles.

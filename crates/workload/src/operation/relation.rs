@@ -77,6 +77,17 @@ pub(super) fn query<M: MeshQuery, E: Elements<M>>(
     elements: &E,
 ) -> SweepResult {
     macro_rules! sweep_relation {
+        (edge_vertices $list:ident $from:ident $to:ident) => {{
+            // Programs of users take the array of the two ends apart.
+            #[inline(never)]
+            fn edge_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
+                query_each(elements.$list(mesh), |sink, element| {
+                    let [a, b] = mesh.edge_vertices(element);
+                    sink.with_one(a).with_one(b)
+                })
+            }
+            edge_vertices(mesh, elements)
+        }};
         ($query:ident $list:ident $from:ident $to:ident) => {{
             #[inline(never)]
             fn $query<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
