@@ -1,5 +1,5 @@
-//! The bench on which every lab measures: the machine, its heap and caches, the time that is left, and
-//! what the results tell about these.
+//! The bench on which every lab measures: the machine, its heap and caches, and what the results tell
+//! about these.
 //!
 //! A lab builds backends, puts them into the columns of a trial, and chooses the tasks (the entries).
 //! [`Bench::measure`] measures the trial in rounds, compares the checksums, and judges the samples.
@@ -18,7 +18,7 @@ use sixfold_workload::{Clock, Operation, TimedBackend};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::control;
-use crate::engine::effort::{Budget, Effort};
+use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Measurement, Progress};
@@ -31,8 +31,6 @@ pub(crate) struct Bench<'m> {
     pub(crate) machine: &'m dyn Machine,
     /// The heap and the caches.
     pub(crate) memory: Memory,
-    /// The time for all work of the lab.
-    pub(crate) budget: Budget<'m>,
     /// Ends the measurement when set.
     pub(crate) stop: &'m AtomicBool,
     run: Run,
@@ -40,15 +38,14 @@ pub(crate) struct Bench<'m> {
 }
 
 impl<'m> Bench<'m> {
-    /// Starts the heap and the caches as `settings` say. The time of `budget` runs already. `needed` is
-    /// the approximate peak memory of the measurements in bytes.
+    /// Starts the heap and the caches as `settings` say. `needed` is the approximate peak memory of the
+    /// measurements in bytes.
     ///
     /// # Errors
     ///
     /// Returns an error if another heap policy is active in this process.
     pub(crate) fn start(
         machine: &'m dyn Machine,
-        budget: Budget<'m>,
         settings: RunSettings,
         needed: u64,
         stop: &'m AtomicBool,
@@ -57,7 +54,6 @@ impl<'m> Bench<'m> {
         Ok(Self {
             machine,
             memory,
-            budget,
             stop,
             run: start_run(settings),
             timer: timer::measure(machine.clock()),
@@ -281,7 +277,7 @@ impl Measured<'_> {
 }
 
 /// Returns the corrected time of each entry. Entries of the same task must be adjacent.
-pub(crate) fn corrected(entries: &[Entry]) -> Vec<Option<f64>> {
+fn corrected(entries: &[Entry]) -> Vec<Option<f64>> {
     let tasks = entries.chunk_by(|a, b| a.job.task == b.job.task);
     let times = tasks.map(|group| group.iter().map(Entry::times).collect::<Vec<_>>());
     times.flat_map(|times| corrected_times(&times)).collect()

@@ -10,7 +10,7 @@ use sixfold_results::RunSettings;
 use sixfold_workload::{Backend, Clock, Job, MachineClock, Operation, Run, Series, TimedBackend};
 
 use crate::engine::bench::{Bench, Columns, Trial};
-use crate::engine::effort::{Budget, Effort};
+use crate::engine::effort::Effort;
 
 /// The times of all backends of a trial, in nanoseconds of processor time of this thread. Elapsed
 /// time would include the time of other programs.
@@ -103,9 +103,8 @@ fn engine_cost() {
         named: false,
         seed: 1,
     };
-    let budget = Budget::start(effort, &clock);
     let mut bench =
-        Bench::start(&clock, budget, RunSettings::default(), 0, &stop).expect("the same policy");
+        Bench::start(&clock, RunSettings::default(), 0, &stop).expect("the same policy");
     let start = clock.now();
     let measured = bench.measure(trial, &mut |_| ());
     let total = (clock.now() - start).ns();

@@ -25,7 +25,7 @@ pub use settings::{GrowthError, GrowthSettings, growth_bytes, growth_plan};
 pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
 use crate::engine::bench::{Bench, Columns, Trial};
-use crate::engine::effort::{Budget, Effort};
+use crate::engine::effort::Effort;
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
@@ -73,10 +73,9 @@ pub(crate) fn growth_on(
     let caches = caches();
     let clock = machine.clock();
     let study = &settings.study;
-    let budget = Budget::start(study.effort, clock);
     let needed = growth_bytes(settings)?;
-    let bench = Bench::start(machine, budget, study.run_settings(), needed, stop)
-        .map_err(StudyError::from)?;
+    let bench =
+        Bench::start(machine, study.run_settings(), needed, stop).map_err(StudyError::from)?;
     let mut sweep = Sweep {
         settings,
         plan: &plan,

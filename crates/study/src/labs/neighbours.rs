@@ -143,8 +143,8 @@ pub(crate) fn neighbours_on(
         heap: settings.heap,
         ..settings.effort.run_settings()
     };
-    let mut bench = Bench::start(machine, budget, run_settings, needed as u64, stop)
-        .map_err(StudyError::from)?;
+    let mut bench =
+        Bench::start(machine, run_settings, needed as u64, stop).map_err(StudyError::from)?;
     let again = |first: usize| {
         build(&chosen[first])
             .ok()
@@ -157,7 +157,7 @@ pub(crate) fn neighbours_on(
         skewed: false,
         entries: entries(&columns, &input),
         columns,
-        effort: bench.budget.left(),
+        effort: budget.left(),
         named: true,
         seed: settings.seed,
     };

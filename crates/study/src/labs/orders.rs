@@ -89,7 +89,7 @@ pub(crate) fn orders_on(
     }
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = orders_bytes(study_mesh, settings)?;
-    let mut bench = Bench::start(machine, budget, settings.run_settings(), needed, stop)?;
+    let mut bench = Bench::start(machine, settings.run_settings(), needed, stop)?;
     let skewed = is_skewed(&study_mesh.facts);
     let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
     let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);
@@ -137,7 +137,7 @@ pub(crate) fn orders_on(
         skewed,
         entries,
         columns: built,
-        effort: bench.budget.left(),
+        effort: budget.left(),
         named: !settings.operations.is_empty(),
         seed: settings.seed,
     };

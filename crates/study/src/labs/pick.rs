@@ -156,8 +156,8 @@ pub(crate) fn pick_on(
         .iter()
         .map(|study_mesh| needed(study_mesh, settings));
     let needed = needed.max().unwrap_or(0);
-    let mut bench = Bench::start(machine, budget, settings.run_settings(), needed, stop)
-        .map_err(StudyError::from)?;
+    let mut bench =
+        Bench::start(machine, settings.run_settings(), needed, stop).map_err(StudyError::from)?;
     let mut outcomes = Vec::new();
     for (i, study_mesh) in study_meshes.iter().enumerate() {
         if stop.load(Ordering::Relaxed) && i > 0 {
@@ -293,7 +293,15 @@ fn measure_mesh(
     } else {
         progress(0.1, "tabulating");
         let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
-        let tables = build_tables(&backends, polygons, counts, settings.seed, bench, tabulate);
+        let tables = build_tables(
+            &backends,
+            polygons,
+            counts,
+            settings.seed,
+            settings.effort,
+            bench,
+            tabulate,
+        );
         if let Some((tables, built)) = tables {
             match too_large(&tables.name, tables.bytes) {
                 None => backends.push((tables, built)),

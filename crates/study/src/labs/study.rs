@@ -234,7 +234,7 @@ pub(crate) fn study_on(
     }
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = needed_bytes(&chosen, &operations, &counts);
-    let mut bench = Bench::start(machine, budget, settings.run_settings(), needed, stop)?;
+    let mut bench = Bench::start(machine, settings.run_settings(), needed, stop)?;
     let skewed = is_skewed(&study_mesh.facts);
     let draw = chosen
         .iter()
@@ -281,7 +281,7 @@ pub(crate) fn study_on(
         skewed,
         entries: columns.entries(&operations),
         columns,
-        effort: bench.budget.left(),
+        effort: budget.left(),
         named: !settings.operations.is_empty(),
         seed: settings.seed,
     };

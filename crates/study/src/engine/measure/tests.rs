@@ -11,7 +11,6 @@ use sixfold::{PolygonMesh, QueryCost, Relation};
 use super::*;
 use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::control::control;
-use crate::engine::effort::Budget;
 use crate::engine::plan::MIN_ELEMENTS;
 use crate::engine::simulated_machine::SimulatedMachine;
 use sixfold_core::Counts;
@@ -200,8 +199,7 @@ fn watch_trial(
         ..RunSettings::default()
     };
     let stop = AtomicBool::new(limits.stop);
-    let budget = Budget::start(limits.effort, machine);
-    let mut bench = Bench::start(machine, budget, settings, 0, &stop).expect("no heap policy");
+    let mut bench = Bench::start(machine, settings, 0, &stop).expect("no heap policy");
     bench.measure(trial, progress).entries
 }
 

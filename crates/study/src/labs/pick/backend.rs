@@ -134,6 +134,7 @@ pub(crate) fn build_tables<'a>(
     polygons: &'a PolygonMesh,
     counts: Counts,
     seed: u64,
+    effort: Effort,
     bench: &mut Bench<'_>,
     tabulate: impl Fn(&Backend) -> Option<Box<dyn MixBackend + 'a>>,
 ) -> Option<Contestant<'a>> {
@@ -150,7 +151,7 @@ pub(crate) fn build_tables<'a>(
     });
     let (tables, built): (Vec<_>, Vec<_>) = made.unzip();
     let columns = Columns::without_control(built);
-    let effort = match bench.budget.left() {
+    let effort = match effort {
         Effort::Budget(_) => Effort::Budget(TABLES_BUDGET),
         Effort::Rounds(_) => Effort::Rounds(TABLE_ROUNDS),
     };

@@ -6,8 +6,7 @@ use std::time::Duration;
 
 use sixfold::{QueryCost, UnknownName};
 use sixfold_results::{
-    AskedCount, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport, RUN, RunSettings,
-    Time,
+    AskedCount, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport, RunSettings, Time,
 };
 use sixfold_workload::{
     Access, Amount, Contestant, Job, MachineClock, Operation, ProgramRefusal, Series, Suite,
@@ -25,7 +24,7 @@ use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::MeasuredMix;
 use crate::labs::pick::measurement::{self, Outcome, PickMeasurement};
 use crate::labs::pick::pooled::{Question, pooled};
-use crate::labs::pick::tasks::{TaskPlan, with_own_time};
+use crate::labs::pick::tasks::{TaskPlan, program_entry, with_own_time};
 use crate::labs::pick::{PickError, needs};
 use crate::labs::study::StudyError;
 use crate::refusal;
@@ -134,8 +133,8 @@ pub(crate) fn pick_for_programs_on(
     let steps = (programs.len() * study_meshes.len()).max(1);
     // Not a share of the time that is left: a slow program must not exclude structures of the next.
     let longest_run_ns = LONGEST_RUN * settings.effort.limit_ns() / steps as f64;
-    let mut bench = Bench::start(machine, budget, settings.run_settings(), 0, stop)
-        .map_err(StudyError::from)?;
+    let mut bench =
+        Bench::start(machine, settings.run_settings(), 0, stop).map_err(StudyError::from)?;
     let mut reports = Vec::new();
     for (i, program) in programs.iter().enumerate() {
         let mut outcomes = Vec::new();
@@ -293,7 +292,7 @@ fn measure_mesh(
     }
     let plan = WholeProgram {
         runs: settings.runs.max(1) as f64,
-        pauses_clock: program.changes_mesh(),
+        changes_mesh: program.changes_mesh(),
         own_ns: program.own_ns(),
     };
     let measurement = PickMeasurement {
@@ -437,8 +436,8 @@ impl<'e> Qualification<'e> {
 struct WholeProgram {
     /// The number of runs in one use of the mesh.
     runs: f64,
-    /// True if copies are made between runs, outside the timing.
-    pauses_clock: bool,
+    /// Whether a run changes the mesh.
+    changes_mesh: bool,
     /// The time of the program's own work in a run.
     own_ns: f64,
 }
@@ -446,10 +445,7 @@ struct WholeProgram {
 impl TaskPlan for WholeProgram {
     fn entries(&self, candidates: &[Candidate]) -> Vec<Entry> {
         let columns = || 0..candidates.len();
-        let runs = columns().map(|column| Entry {
-            pauses_clock: self.pauses_clock,
-            ..Entry::of_task(column, Task::Program, RUN)
-        });
+        let runs = columns().map(|column| program_entry(column, self.changes_mesh));
         let builds = columns().map(|column| Entry {
             least_every: BUILDS_EVERY,
             ..Entry::new(column, Operation::Build)

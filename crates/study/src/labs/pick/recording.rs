@@ -3,19 +3,19 @@
 use std::fmt::Display;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_results::{MIX, RUN};
 use sixfold_workload::pages::HeapPolicyConflict;
 use sixfold_workload::{
-    Backend, Contestant, Draw, MachineClock, Recording, Route, Schedule, Suite, SuiteProgram, Task,
+    Backend, Contestant, Draw, MachineClock, Recording, Route, Schedule, Suite, SuiteProgram,
     TimedBackend, prepare_mix,
 };
 
 use crate::engine::bench::{Bench, Columns, Trial};
-use crate::engine::effort::Budget;
+use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
 use crate::inspect::StudyMesh;
 use crate::labs::pick::programs::{ProgramSettings, is_local};
+use crate::labs::pick::tasks::{mix_entry, program_entry};
 
 /// The time for choosing the structure on which a program is recorded is a part of the budget: one
 /// part of so many.
@@ -51,14 +51,15 @@ pub struct RecordedProgram {
     pub structure: &'static str,
     /// What the program asked, with the own time of the program in the workload and in the trace.
     pub recording: Recording,
-    /// The median time of a run on the structure, without recording, in nanoseconds.
+    /// The time of a run on the structure, without recording, in nanoseconds: a median, corrected for
+    /// drift.
     pub run_ns: f64,
 }
 
 /// Measures `program` on each structure that holds the mesh and does not scan it. Then records what it
 /// asks on the fastest of these structures.
 ///
-/// Then measures the program, its trace and its workload in turns, for a part of the budget of
+/// Then measures the program, its trace and its workload in rounds, for the rest of the budget of
 /// `settings`. The time of the program minus the time of its trace is the program's own time, which
 /// is added to all times of the trace, and likewise for the workload.
 ///
@@ -100,7 +101,7 @@ pub(crate) fn record_program_on(
     let polygons = &study_mesh.polygons;
     let counts = polygons.counts(study_mesh.facts.edges);
     let budget = Budget::start(settings.effort, machine.clock());
-    let mut bench = Bench::start(machine, budget, settings.run_settings(), 0, stop)?;
+    let mut bench = Bench::start(machine, settings.run_settings(), 0, stop)?;
     let mut first_reason = None;
     let mut keep_reason = |contestant: &Contestant, refusal: &dyn Display| {
         first_reason.get_or_insert(format!("{}: {refusal}", contestant.name()));
@@ -117,17 +118,14 @@ pub(crate) fn record_program_on(
             Err(refusal) => keep_reason(contestant, &refusal),
         }
     }
-    let run = |subject: usize| Entry {
-        pauses_clock: program.changes_mesh(),
-        ..Entry::of_task(subject, Task::Program, RUN)
-    };
+    let run = |subject: usize| program_entry(subject, program.changes_mesh());
     let trial = Trial {
         polygons,
         counts,
         skewed: false,
         entries: (0..subjects.len()).map(run).collect(),
         columns: Columns::without_control(subjects),
-        effort: bench.budget.share(1.0, SELECTION_SHARE),
+        effort: budget.share(1.0, SELECTION_SHARE),
         named: true,
         seed: settings.seed,
     };
@@ -160,10 +158,10 @@ pub(crate) fn record_program_on(
             let run_ns = calibrate(
                 &mut recording,
                 study_mesh,
-                contestant,
-                subject,
+                (contestant, subject),
                 &mut bench,
                 &run,
+                budget.left(),
                 settings.seed,
             );
             Ok(RecordedProgram {
@@ -181,10 +179,10 @@ pub(crate) fn record_program_on(
 fn calibrate(
     recording: &mut Recording,
     study_mesh: &StudyMesh,
-    contestant: &Contestant,
-    program: Box<dyn TimedBackend + '_>,
+    (contestant, program): (&Contestant, Box<dyn TimedBackend + '_>),
     bench: &mut Bench<'_>,
     run: &dyn Fn(usize) -> Entry,
+    effort: Effort,
     seed: u64,
 ) -> f64 {
     let polygons = &study_mesh.polygons;
@@ -201,40 +199,39 @@ fn calibrate(
     let mix = backend.and_then(|b| prepare_mix(&b, polygons, &draw, &schedule, &route).ok());
     let operations = workload.operations_on(&counts);
 
-    let mut subjects = vec![program];
-    let mut entries = vec![run(0)];
-    if let Some(trace) = trace {
-        entries.push(run(subjects.len()));
-        subjects.push(bench.machine.host(trace, &counts));
-    }
-    let traced = entries.len() - 1;
-    if let Some(mix) = mix {
-        entries.push(Entry {
-            pauses_clock: schedule.edits().next().is_some(),
-            ..Entry::of_task(subjects.len(), Task::Mix, MIX)
-        });
-        subjects.push(bench.machine.host(mix, &counts));
-    }
-    let mixed = entries.len() - 1;
+    let mut built = vec![(program, run(0))];
+    let trace = trace.map(|trace| {
+        let subject = built.len();
+        built.push((bench.machine.host(trace, &counts), run(subject)));
+        subject
+    });
+    let mix = mix.map(|mix| {
+        let subject = built.len();
+        let entry = mix_entry(subject, &schedule);
+        built.push((bench.machine.host(mix, &counts), entry));
+        subject
+    });
+    let (subjects, entries) = built.into_iter().unzip();
     let trial = Trial {
         polygons,
         counts,
         skewed: false,
         columns: Columns::without_control(subjects),
         entries,
-        effort: bench.budget.left(),
+        effort,
         named: true,
         seed,
     };
     let measured = bench.measure(trial, &mut |_| ());
-    let time = |entry: usize| measured.times[entry];
+    // Each subject has one entry.
+    let time = |subject: usize| measured.times[subject];
     let run_ns = time(0).unwrap_or(0.0);
-    let own_ns = |ns: Option<f64>, run_ns: f64| ns.map_or(0.0, |ns| run_ns - ns);
-    let trace_ns = time(traced).filter(|_| traced > 0);
-    recording.trace.own_ns = own_ns(trace_ns, run_ns);
-    let done = measured.entries[mixed].outcome;
-    let done = done.filter(|_| mixed > traced);
-    let operation_ns = done.and_then(|done| Some(time(mixed)? / done.elements.max(1) as f64));
-    recording.workload.own_ns = own_ns(operation_ns, run_ns / operations);
+    let operation_ns = |mix: usize| {
+        let turn = measured.entries[mix].outcome?;
+        Some(time(mix)? / turn.elements.max(1) as f64)
+    };
+    let rest = |ns: Option<f64>, run_ns: f64| ns.map_or(0.0, |ns| run_ns - ns);
+    recording.trace.own_ns = rest(trace.and_then(time), run_ns);
+    recording.workload.own_ns = rest(mix.and_then(operation_ns), run_ns / operations);
     run_ns
 }

@@ -4,7 +4,7 @@
 use sixfold::PolygonMesh;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold_core::Counts;
-use sixfold_results::{MIX, PartCost, Time};
+use sixfold_results::{MIX, PartCost, RUN, Time};
 use sixfold_workload::{Action, Operation, Schedule, Task, Workload};
 
 use crate::engine::measure::Entry;
@@ -105,10 +105,7 @@ impl TaskPlan for Tasks<'_> {
         let columns = || candidates.iter().enumerate();
         if self.schedule.on_elements > 0.0 {
             let mixing = columns().filter(|(_, candidate)| !candidate.scans());
-            entries.extend(mixing.map(|(column, _)| Entry {
-                pauses_clock: self.schedule.edits().next().is_some(),
-                ..Entry::of_task(column, Task::Mix, MIX)
-            }));
+            entries.extend(mixing.map(|(column, _)| mix_entry(column, self.schedule)));
         }
         for part in 0..self.schedule.parts.len() {
             entries.extend(columns().map(|(i, candidate)| self.part_entry(i, candidate, part)));
@@ -181,6 +178,23 @@ impl TaskPlan for Tasks<'_> {
 
     fn operations(&self) -> f64 {
         self.operations
+    }
+}
+
+/// Returns the entry for turns of a mix.
+pub(crate) fn mix_entry(column: usize, schedule: &Schedule) -> Entry {
+    Entry {
+        pauses_clock: schedule.edits().next().is_some(),
+        ..Entry::of_task(column, Task::Mix, MIX)
+    }
+}
+
+/// Returns the entry for a run of a program. A program that changes the mesh runs on copies, which are
+/// made outside the timing.
+pub(crate) fn program_entry(column: usize, changes_mesh: bool) -> Entry {
+    Entry {
+        pauses_clock: changes_mesh,
+        ..Entry::of_task(column, Task::Program, RUN)
     }
 }
 

@@ -121,9 +121,8 @@ fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
     let control = prepared("half-edge", costs_ns[0]);
     let stop = AtomicBool::new(false);
     let tasks = Tasks::new(&settings.workload, &schedule, &study_mesh.polygons, &counts);
-    let budget = Budget::start(effort, &machine);
     let mut bench =
-        Bench::start(&machine, budget, settings.run_settings(), 0, &stop).expect("no heap policy");
+        Bench::start(&machine, settings.run_settings(), 0, &stop).expect("no heap policy");
     let measurement = PickMeasurement {
         study_mesh: &study_mesh,
         plan: &tasks,
