@@ -172,6 +172,12 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
             .control
             .is_some_and(|control| control.operations.len() == 2)
     );
+    // The control is a structure in the given order.
+    let second = report.samples.iter().filter(|samples| samples.control);
+    let second: Vec<(&str, &str)> = second
+        .map(|samples| (samples.backend.as_str(), samples.case.as_str()))
+        .collect();
+    assert_eq!(second, [("face-vertex", "given"); 2]);
 }
 
 #[test]

@@ -238,6 +238,31 @@ fn quick_on(
     pick_on(machine, &study_meshes, settings, &stop, &mut |_, _| ())
 }
 
+#[test]
+fn tables_are_made_from_the_smallest_of_the_structures_that_make_them_fast() {
+    // Six structures and the control are hosted first, then the tables of the structures without scans.
+    for (slow, expected) in [
+        (1.0, "corner-table"),
+        (1.9, "corner-table"),
+        (2.5, "face-vertex"),
+    ] {
+        let costs = move |work: &Work<'_>| match (work.task, work.place) {
+            (Task::Operation(Operation::Build), 10) => slow * 50_000.0,
+            (Task::Operation(Operation::Build), _) => 50_000.0,
+            _ => work.usual_ns(),
+        };
+        for effort in [Effort::of_ms(2000), Effort::of_rounds(3)] {
+            let machine = SimulatedMachine::with_costs(costs);
+            let mesh = shapes::triangle_torus(12, 10).expect("a torus");
+            let report = quick_on(&machine, &settings(effort), &[mesh]).expect("it has faces");
+            let mut rows = report.ranking.iter();
+            let tables = rows.find(|row| row.backend == "relation-tables");
+            let made_from = tables.and_then(|row| row.made_from.as_deref());
+            assert_eq!(made_from, Some(expected), "{slow} {effort:?}");
+        }
+    }
+}
+
 /// Returns the names of the ranked backends, the fastest first.
 fn ranked(report: &PickReport) -> Vec<&str> {
     let ranking = report.ranking.iter();
