@@ -20,7 +20,7 @@ pub struct Numbering<'m, M: MeshQuery> {
 
 /// Defines the method for one table, such as `vertex_faces`.
 macro_rules! tabulate {
-    ($(#[$doc:meta])+ $name:ident, $relation:ident, $all:ident, $from:ty => $number:ident, $to:ty) => {
+    ($(#[$doc:meta])+ $name:ident, $relation:ident, $all:ident, $from:ty => $numbers:ident, $to:ty) => {
         $(#[$doc])+
         ///
         /// Takes O(rows + items) time, plus the time to query every element once.
@@ -31,8 +31,14 @@ macro_rules! tabulate {
         /// address.
         pub fn $name(&self) -> Result<RelationTable<$from, $to>, TabulationError> {
             let mesh = self.mesh;
-            RelationTable::collect(Relation::$relation, mesh.$all(), |element, items| {
-                items.extend(mesh.$name(element).into_iter().map(|found| self.$number(found)));
+            let numbers = self.$numbers();
+            RelationTable::collect(Relation::$relation, |rows| {
+                for element in mesh.$all() {
+                    let found = mesh.$name(element).into_iter();
+                    rows.items.extend(found.map(|found| <$to>::new(numbers[found])));
+                    rows.end_row()?;
+                }
+                Some(())
             })
         }
     };
@@ -96,38 +102,38 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
 
     tabulate! {
         /// Builds the VV table: for each vertex, the adjacent vertices.
-        vertex_vertices, VertexVertices, vertices, VertexId => vertex, VertexId
+        vertex_vertices, VertexVertices, vertices, VertexId => vertices, VertexId
     }
     tabulate! {
         /// Builds the VE table: for each vertex, the edges at the vertex.
-        vertex_edges, VertexEdges, vertices, VertexId => edge, EdgeId
+        vertex_edges, VertexEdges, vertices, VertexId => edges, EdgeId
     }
     tabulate! {
         /// Builds the VF table: for each vertex, the faces at the vertex.
-        vertex_faces, VertexFaces, vertices, VertexId => face, FaceId
+        vertex_faces, VertexFaces, vertices, VertexId => faces, FaceId
     }
     tabulate! {
         /// Builds the EV table: for each edge, the two ends.
-        edge_vertices, EdgeVertices, edges, EdgeId => vertex, VertexId
+        edge_vertices, EdgeVertices, edges, EdgeId => vertices, VertexId
     }
     tabulate! {
         /// Builds the EE table: for each edge, the edges that share an end with the edge.
-        edge_edges, EdgeEdges, edges, EdgeId => edge, EdgeId
+        edge_edges, EdgeEdges, edges, EdgeId => edges, EdgeId
     }
     tabulate! {
         /// Builds the EF table: for each edge, the faces along the edge.
-        edge_faces, EdgeFaces, edges, EdgeId => face, FaceId
+        edge_faces, EdgeFaces, edges, EdgeId => faces, FaceId
     }
     tabulate! {
         /// Builds the FV table: for each face, the vertices at the corners.
-        face_vertices, FaceVertices, faces, FaceId => vertex, VertexId
+        face_vertices, FaceVertices, faces, FaceId => vertices, VertexId
     }
     tabulate! {
         /// Builds the FE table: for each face, the edges.
-        face_edges, FaceEdges, faces, FaceId => edge, EdgeId
+        face_edges, FaceEdges, faces, FaceId => edges, EdgeId
     }
     tabulate! {
         /// Builds the FF table: for each face, the adjacent faces.
-        face_faces, FaceFaces, faces, FaceId => face, FaceId
+        face_faces, FaceFaces, faces, FaceId => faces, FaceId
     }
 }

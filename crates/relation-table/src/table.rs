@@ -20,6 +20,22 @@ pub struct RelationTable<A, B> {
     element_kind: PhantomData<A>,
 }
 
+/// The rows of a table that is built.
+pub(crate) struct Rows<B> {
+    pub(crate) items: Vec<B>,
+    offsets: Vec<u32>,
+}
+
+impl<B> Rows<B> {
+    /// Ends a row with the last item; `None` if an offset cannot address it.
+    #[inline]
+    pub(crate) fn end_row(&mut self) -> Option<()> {
+        let end = u32::try_from(self.items.len()).ok()?;
+        self.offsets.push(end);
+        Some(())
+    }
+}
+
 /// The reason why the table of a relation could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -35,19 +51,26 @@ pub enum TabulationError {
 }
 
 impl<A: RowId, B: RowId> RelationTable<A, B> {
-    /// Builds the table. `ask` appends the row of one element to the list of items.
-    pub(crate) fn collect<E>(
+    /// Builds the table. `rows` appends the items of each row, and then calls [`Rows::end_row`].
+    pub(crate) fn collect(
         relation: Relation,
-        elements: impl Iterator<Item = E>,
-        mut ask: impl FnMut(E, &mut Vec<B>),
+        rows: impl FnOnce(&mut Rows<B>) -> Option<()>,
     ) -> Result<Self, TabulationError> {
-        let mut items = Vec::new();
-        let mut offsets = vec![0];
-        for element in elements {
-            ask(element, &mut items);
-            let end = u32::try_from(items.len());
-            offsets.push(end.map_err(|_| TabulationError::TooManyItems { relation })?);
-        }
+        let mut collected = Rows {
+            items: Vec::new(),
+            offsets: vec![0],
+        };
+        let fits = rows(&mut collected);
+        fits.ok_or(TabulationError::TooManyItems { relation })?;
+        Ok(Self::from_rows(collected))
+    }
+
+    fn from_rows(
+        Rows {
+            mut items,
+            mut offsets,
+        }: Rows<B>,
+    ) -> Self {
         let rows = offsets.len() - 1;
         let length = |row: &[u32]| row[1] - row[0];
         let mut lengths = offsets.windows(2).map(length);
@@ -59,13 +82,13 @@ impl<A: RowId, B: RowId> RelationTable<A, B> {
         }
         items.shrink_to_fit();
         offsets.shrink_to_fit();
-        Ok(Self {
+        Self {
             offsets,
             stride,
             rows,
             items,
             element_kind: PhantomData,
-        })
+        }
     }
 
     /// Returns the number of rows.

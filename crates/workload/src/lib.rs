@@ -12,6 +12,7 @@ mod clock;
 mod compilation;
 mod draw;
 mod edit_place;
+mod handle_lists;
 mod heap;
 mod job;
 mod memory_speed;

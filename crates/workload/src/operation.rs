@@ -14,7 +14,7 @@ use crate::sweeps::{Elements, Outputs, SweepResult, field_sum};
 
 pub(crate) mod build;
 pub(crate) mod edit_pass;
-mod relation;
+pub(crate) mod relation;
 pub(crate) mod subdivision;
 
 use edit_pass::EditPass;
@@ -236,7 +236,7 @@ macro_rules! operations {
                 outputs: &mut Outputs<M>,
             ) -> SweepResult {
                 match self {
-                    Self::Relation(relation) => relation::query(relation, mesh, elements),
+                    Self::Relation(relation) => elements.query(mesh, relation),
                     $(Self::$variant => $module::sweep(kind, mesh, elements, outputs),)+
                     // The functions `run` of their modules run these operations.
                     Self::Build | Self::CatmullClark(_) | Self::Loop(_) | Self::EditPass(_) => {
@@ -430,21 +430,14 @@ impl Operation {
         ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Returns the checksum of an operation that visited `elements` of `mesh` with the result `sum`.
-    pub(crate) fn checksum<M: MeshQuery, E: Elements<M>>(
-        self,
-        mesh: &M,
-        elements: &E,
-        outputs: &Outputs<M>,
-        sum: SweepResult,
-    ) -> f64 {
+    /// Returns the checksum of an operation with the result `sum`. `values` returns the sum of the values
+    /// that the operation stored for the visited elements of a kind.
+    pub(crate) fn checksum(self, sum: SweepResult, values: &dyn Fn(ElementKind) -> f64) -> f64 {
         match self.description().checksum {
             Checksum::Count => sum.count as f64,
             Checksum::Lengths | Checksum::Positions => sum.sum,
-            Checksum::FaceValues => field_sum(elements.faces(mesh).map(|f| outputs.faces[f])),
-            Checksum::VertexValues => {
-                field_sum(elements.vertices(mesh).map(|v| outputs.vertices[v]))
-            }
+            Checksum::FaceValues => values(ElementKind::Face),
+            Checksum::VertexValues => values(ElementKind::Vertex),
         }
     }
 }

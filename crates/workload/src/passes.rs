@@ -7,7 +7,7 @@ use sixfold::MeshQuery;
 use crate::job::{Outcome, Run};
 use crate::operation::{ElementKind, Operation};
 use crate::series::Series;
-use crate::sweeps::{All, Elements, Outputs, SweepResult};
+use crate::sweeps::{All, Outputs, SweepResult};
 
 /// Runs `operation` over all of `mesh` as `series` describes. Returns the time of all runs.
 pub(crate) fn run_whole<M: MeshQuery>(
@@ -25,23 +25,22 @@ pub(crate) fn run_whole<M: MeshQuery>(
         black_box(&mut *outputs);
     });
     let check = series.check;
-    let outcome = check.then(|| outcome(mesh, outputs, operation, &All, results, [1.0; 3]));
+    let values = |kind| outputs.sum(mesh, &All, kind);
+    let outcome = check.then(|| outcome(operation, results, [1.0; 3], &values));
     Run::done(time, outcome)
 }
 
-/// Returns the result of a pass over `elements`. `results` are those of the kinds of elements, and
-/// `scale` is the number of all elements of a kind, divided by the number of visited ones.
-pub(crate) fn outcome<M: MeshQuery, E: Elements<M>>(
-    mesh: &M,
-    outputs: &Outputs<M>,
+/// Returns the result of a pass. `results` are those of the kinds of elements, and `scale` is the number
+/// of all elements of a kind, divided by the number of visited ones. `values` returns the sum of the
+/// values that the pass stored for the visited elements of a kind.
+pub(crate) fn outcome(
     operation: Operation,
-    elements: &E,
     results: [SweepResult; 3],
     scale: [f64; 3],
+    values: &dyn Fn(ElementKind) -> f64,
 ) -> Outcome {
-    let checksum = operation.checksum(mesh, elements, outputs, SweepResult::sum_of(results));
     Outcome {
-        checksum,
+        checksum: operation.checksum(SweepResult::sum_of(results), values),
         elements: elements_of_all(operation, results, scale),
         refused: 0,
     }

@@ -36,7 +36,6 @@ pub(crate) fn count<M: Measured>(
     let elements = [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()];
     let probed = mesh.probed(probe.clone());
     let counter = ReadCounter {
-        mesh: &probed,
         probe: &probe,
         stop,
     };
@@ -47,9 +46,9 @@ pub(crate) fn count<M: Measured>(
         let whole = if scans {
             None
         } else {
-            counter.count(relation, elements, elements)
+            counter.count(&probed, relation, elements, elements)
         };
-        let found = whole.or_else(|| counter.count(relation, elements, SCAN_SAMPLE));
+        let found = whole.or_else(|| counter.count(&probed, relation, elements, SCAN_SAMPLE));
         if stop.load(Ordering::Relaxed) {
             return;
         }
@@ -59,17 +58,24 @@ pub(crate) fn count<M: Measured>(
     }
 }
 
-struct ReadCounter<'a, M> {
-    mesh: &'a M,
+struct ReadCounter<'a> {
     probe: &'a CountingProbe,
     stop: &'a AtomicBool,
 }
 
-impl<M: MeshQuery> ReadCounter<'_, M> {
+impl ReadCounter<'_> {
     /// Queries `queried` of the `elements`. Returns `None` if `stop` is true. Also returns `None`
     /// if all elements are queried and a query reads too many rows on average.
-    fn count(&self, relation: Relation, elements: usize, queried: usize) -> Option<Reads> {
-        let mesh = self.mesh;
+    fn count<M: MeshQuery>(
+        &self,
+        mesh: &M,
+        relation: Relation,
+        elements: usize,
+        queried: usize,
+    ) -> Option<Reads> {
+        // Making the list may read rows.
+        self.probe.clear();
+        self.probe.begin(Step::Listing);
         let sweep = Sweep {
             relation,
             elements,
@@ -77,27 +83,23 @@ impl<M: MeshQuery> ReadCounter<'_, M> {
         };
         macro_rules! count_relation {
             ($query:ident $list:ident $from:ident $to:ident) => {
-                self.count_sweep(
-                    sweep,
-                    || mesh.$list(),
-                    |element| count_results(mesh.$query(element)),
-                )
+                self.count_sweep(sweep, &mut mesh.$list(), &mut |element| {
+                    count_results(mesh.$query(element))
+                })
             };
         }
         sixfold_core::match_relation!(relation, count_relation!)
     }
 
-    /// Lists the elements one by one, as the timed sweep does, and queries the selected elements.
-    fn count_sweep<I: Iterator>(
+    /// Lists the elements one by one, as the timed sweep does, and queries the selected elements. Called
+    /// by address, so that this is compiled once for each type of handles.
+    fn count_sweep<E>(
         &self,
         sweep: Sweep,
-        list: impl FnOnce() -> I,
-        mut query: impl FnMut(I::Item) -> u64,
+        elements: &mut dyn Iterator<Item = E>,
+        query: &mut dyn FnMut(E) -> u64,
     ) -> Option<Reads> {
         let probe = self.probe;
-        probe.clear();
-        probe.begin(Step::Listing);
-        let mut elements = list();
         let (mut answers, mut queried) = (0, 0);
         for i in 0.. {
             probe.begin(Step::Listing);

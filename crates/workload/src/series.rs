@@ -186,81 +186,126 @@ impl<T> ReusedCopies<T> {
         series: &Series<'_>,
         bytes: usize,
         new: impl Fn() -> T,
-        mut reset: impl FnMut(&mut T),
-        mut run: impl FnMut(&mut T),
+        reset: impl FnMut(&mut T),
+        run: impl FnMut(&mut T),
     ) -> Time {
-        let untimed = Series {
-            start: Start::Warm,
-            runs: series.untimed,
-            ..*series
+        let Self { copies, last_ns } = self;
+        let mut changing = Changing {
+            copies,
+            new,
+            reset,
+            run,
         };
-        self.run_all(&untimed, bytes, &new, &mut reset, &mut run);
-        let least = match series.start {
-            Start::Warm => copy_count(self.last_ns, bytes) as u32,
-            Start::Cold(_) | Start::FreshPages => 1,
-        };
-        if 0 < series.untimed && series.untimed < least {
-            // Each of the copies needs untimed runs, with the results of the others still held:
-            // otherwise a timed run could be the first to touch the pages of its result.
-            let all = Series {
-                runs: least,
-                ..untimed
-            };
-            self.run_all(&all, bytes, &new, &mut reset, &mut run);
-        }
-        let enough = Series {
-            runs: series.runs.max(least),
-            ..*series
-        };
-        let time = self.run_all(&enough, bytes, &new, &mut reset, &mut run);
-        time.scaled(f64::from(series.runs) / f64::from(enough.runs))
-    }
-
-    /// Returns the time of the timed runs, on as many copies as [`copy_count`] allows. The functions are
-    /// called by their addresses, which takes nothing beside a run, so that this code is compiled once
-    /// for each type of copies.
-    fn run_all(
-        &mut self,
-        series: &Series<'_>,
-        bytes: usize,
-        new: &dyn Fn() -> T,
-        reset: &mut dyn FnMut(&mut T),
-        run: &mut dyn FnMut(&mut T),
-    ) -> Time {
-        let fresh = matches!(series.start, Start::FreshPages);
-        let mut total = Time::zero_like(series.clock.now());
-        let mut left = series.runs as usize;
-        while left > 0 {
-            let count = copy_count(self.last_ns, bytes).min(left);
-            // New copies need no reset.
-            let used = self.copies.len().min(count);
-            self.copies[..used].iter_mut().for_each(&mut *reset);
-            while self.copies.len() < count {
-                let mut copy = new();
-                if !self.copies.is_empty() && !fresh {
-                    // This untimed run grows the tables of the copy.
-                    run(&mut copy);
-                    reset(&mut copy);
-                }
-                self.copies.push(copy);
-            }
-            let copies = &mut self.copies[..count];
-            let time = series.timed(|| {
-                for copy in &mut *copies {
-                    run(black_box(copy));
-                }
-            });
-            self.last_ns = time.ns() / count as f64;
-            total = total.plus(time);
-            left -= count;
-        }
-        total
+        time_changing(&mut changing, last_ns, series, bytes)
     }
 
     /// Returns a copy in its state after a run; `None` before the first run.
     pub(crate) fn used_copy(&self) -> Option<&T> {
         self.copies.first()
     }
+}
+
+/// Copies, and what is done with them. The functions are called by their addresses, which takes nothing
+/// beside a run, so that the code that times them is compiled once.
+trait Change {
+    fn count(&self) -> usize;
+    fn add(&mut self);
+    fn reset(&mut self, nth: usize);
+    fn run(&mut self, nth: usize);
+}
+
+struct Changing<'c, T, New, Reset, Run> {
+    copies: &'c mut Vec<T>,
+    new: New,
+    reset: Reset,
+    run: Run,
+}
+
+impl<T, New: Fn() -> T, Reset: FnMut(&mut T), Run: FnMut(&mut T)> Change
+    for Changing<'_, T, New, Reset, Run>
+{
+    fn count(&self) -> usize {
+        self.copies.len()
+    }
+
+    fn add(&mut self) {
+        self.copies.push((self.new)());
+    }
+
+    fn reset(&mut self, nth: usize) {
+        (self.reset)(&mut self.copies[nth]);
+    }
+
+    fn run(&mut self, nth: usize) {
+        (self.run)(black_box(&mut self.copies[nth]));
+    }
+}
+
+/// Returns the time of the runs of `series` on copies of size `bytes`, as [`ReusedCopies::time`].
+/// `last_ns` is the time of the last run.
+fn time_changing(
+    copies: &mut dyn Change,
+    last_ns: &mut f64,
+    series: &Series<'_>,
+    bytes: usize,
+) -> Time {
+    let untimed = Series {
+        start: Start::Warm,
+        runs: series.untimed,
+        ..*series
+    };
+    run_all(copies, last_ns, &untimed, bytes);
+    let least = match series.start {
+        Start::Warm => copy_count(*last_ns, bytes) as u32,
+        Start::Cold(_) | Start::FreshPages => 1,
+    };
+    if 0 < series.untimed && series.untimed < least {
+        // Each of the copies needs untimed runs, with the results of the others still held:
+        // otherwise a timed run could be the first to touch the pages of its result.
+        let all = Series {
+            runs: least,
+            ..untimed
+        };
+        run_all(copies, last_ns, &all, bytes);
+    }
+    let enough = Series {
+        runs: series.runs.max(least),
+        ..*series
+    };
+    let time = run_all(copies, last_ns, &enough, bytes);
+    time.scaled(f64::from(series.runs) / f64::from(enough.runs))
+}
+
+/// Returns the time of the timed runs, on as many copies as [`copy_count`] allows.
+fn run_all(copies: &mut dyn Change, last_ns: &mut f64, series: &Series<'_>, bytes: usize) -> Time {
+    let fresh = matches!(series.start, Start::FreshPages);
+    let mut total = Time::zero_like(series.clock.now());
+    let mut left = series.runs as usize;
+    while left > 0 {
+        let count = copy_count(*last_ns, bytes).min(left);
+        // New copies need no reset.
+        for nth in 0..copies.count().min(count) {
+            copies.reset(nth);
+        }
+        while copies.count() < count {
+            let nth = copies.count();
+            copies.add();
+            if nth > 0 && !fresh {
+                // This untimed run grows the tables of the copy.
+                copies.run(nth);
+                copies.reset(nth);
+            }
+        }
+        let time = series.timed(|| {
+            for nth in 0..count {
+                copies.run(nth);
+            }
+        });
+        *last_ns = time.ns() / count as f64;
+        total = total.plus(time);
+        left -= count;
+    }
+    total
 }
 
 /// Runs `make` as `series` describes. Results have size `bytes` and are dropped outside the timing.

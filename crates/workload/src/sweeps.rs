@@ -16,13 +16,17 @@
 use std::hash::Hasher;
 use std::hint::black_box;
 
-use sixfold::{FaceMap, Handle, MeshQuery, Point, VertexMap};
+use sixfold::{FaceMap, Handle, MeshQuery, Point, Relation, VertexMap};
+
+use crate::operation::{ElementKind, relation};
 
 /// The elements that an operation visits.
 pub(crate) trait Elements<M: MeshQuery> {
     fn vertices<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Vertex> + 'a;
     fn edges<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Edge> + 'a;
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a;
+    /// Queries `relation` at each element.
+    fn query(&self, mesh: &M, relation: Relation) -> SweepResult;
 }
 
 /// All elements, in the order of the structure.
@@ -37,6 +41,10 @@ impl<M: MeshQuery> Elements<M> for All {
     }
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a {
         mesh.faces()
+    }
+    #[inline]
+    fn query(&self, mesh: &M, relation: Relation) -> SweepResult {
+        relation::query_all(relation, mesh)
     }
 }
 
@@ -61,6 +69,15 @@ impl<M: MeshQuery> Outputs<M> {
             outputs.faces[f] = Point::ZERO;
         }
         outputs
+    }
+
+    /// Returns the checksum of the values of `elements` of a kind; 0 of edges, which have none.
+    pub(crate) fn sum<E: Elements<M>>(&self, mesh: &M, elements: &E, kind: ElementKind) -> f64 {
+        match kind {
+            ElementKind::Vertex => field_sum(elements.vertices(mesh).map(|v| self.vertices[v])),
+            ElementKind::Edge => 0.0,
+            ElementKind::Face => field_sum(elements.faces(mesh).map(|f| self.faces[f])),
+        }
     }
 }
 
@@ -156,6 +173,17 @@ impl Sink {
         }
     }
 
+    /// Returns the result of a sweep over `elements` elements. `black_box` makes the compiler compute
+    /// all handles.
+    #[inline(always)]
+    pub(crate) fn finish(self, elements: u64) -> SweepResult {
+        SweepResult {
+            elements,
+            count: self.finish_count(),
+            sum: 0.0,
+        }
+    }
+
     /// Returns the number of handles. `black_box` makes the compiler compute all handles.
     #[inline(always)]
     pub(crate) fn finish_count(self) -> u64 {
@@ -173,12 +201,7 @@ pub(crate) fn query_each<I: Iterator>(
     let (sink, queried) = elements.fold((Sink::default(), 0), |(sink, queried), element| {
         (query(sink, element), queried + 1)
     });
-    black_box(sink.tokens);
-    SweepResult {
-        elements: queried,
-        count: sink.count,
-        sum: 0.0,
-    }
+    sink.finish(queried)
 }
 
 /// Calls `store` for each element, and counts the elements.

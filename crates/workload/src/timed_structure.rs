@@ -6,11 +6,12 @@ use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
 use crate::backend::Backend;
 use crate::draw::{Draw, Side};
+use crate::handle_lists::HandleLists;
 use crate::job::{ElementSample, Job, Run, Task, TimedBackend};
 use crate::operation::{ElementKind, Operation, build, edit_pass, subdivision, vv_smooth};
 use crate::passes::{outcome, run_whole};
 use crate::series::{Series, Start, exceeds_second_level};
-use crate::sweeps::{Elements, Outputs, SweepResult};
+use crate::sweeps::{All, Elements, Outputs, Sink, SweepResult};
 use sixfold_results::Time;
 
 /// A structure built from `polygons`, with storage for outputs and with handles of the drawn
@@ -21,7 +22,7 @@ pub(crate) struct TimedStructure<'a, M: Representation> {
     draw: Option<&'a Draw>,
     pub(crate) mesh: M,
     outputs: Outputs<M>,
-    drawn: DrawnHandles<M>,
+    drawn: HandleLists<M>,
     merged_vertices: usize,
 }
 
@@ -37,7 +38,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
             polygons,
             draw,
             outputs: Outputs::for_mesh(&mesh),
-            drawn: DrawnHandles::default(),
+            drawn: HandleLists::default(),
             merged_vertices: polygons.vertex_count().saturating_sub(mesh.vertex_count()),
             mesh,
         }
@@ -66,9 +67,8 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         self.drawn
             .extend_to(&self.mesh, self.polygons, draw, sample.size);
         let (size, scale) = sizes_and_scales(draw, sample);
-        let elements = SampledElements {
+        let sampled = SampledElements {
             drawn: &self.drawn,
-            scanned: sample.scanned,
             size,
         };
         let mut results = [SweepResult::default(); 3];
@@ -77,8 +77,12 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
             let k = kind.index();
             let time = series.timed(|| {
                 let mesh = black_box(&self.mesh);
-                results[k] = black_box(operation.sweep(kind, mesh, &elements, &mut self.outputs));
-                black_box(&mut self.outputs);
+                let outputs = &mut self.outputs;
+                results[k] = black_box(match sample.scanned[k] {
+                    true => operation.sweep(kind, mesh, &sampled, outputs),
+                    false => operation.sweep(kind, mesh, &All, outputs),
+                });
+                black_box(outputs);
             });
             total = total.plus(time.scaled(scale[k]));
         }
@@ -87,9 +91,12 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
             total = total.plus(moving);
         }
         let (mesh, outputs) = (&self.mesh, &self.outputs);
-        let outcome = series
-            .check
-            .then(|| outcome(mesh, outputs, operation, &elements, results, scale));
+        let values = |kind: ElementKind| match sample.scanned[kind.index()] {
+            true => outputs.sum(mesh, &sampled, kind),
+            false => outputs.sum(mesh, &All, kind),
+        };
+        let check = series.check;
+        let outcome = check.then(|| outcome(operation, results, scale, &values));
         Run::done(total, outcome)
     }
 }
@@ -212,24 +219,7 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
     }
 }
 
-/// The handles of the first elements of the draw.
-struct DrawnHandles<M: MeshQuery> {
-    vertices: Vec<M::Vertex>,
-    edges: Vec<M::Edge>,
-    faces: Vec<M::Face>,
-}
-
-impl<M: MeshQuery> Default for DrawnHandles<M> {
-    fn default() -> Self {
-        Self {
-            vertices: Vec::new(),
-            edges: Vec::new(),
-            faces: Vec::new(),
-        }
-    }
-}
-
-impl<M: Representation> DrawnHandles<M> {
+impl<M: Representation> HandleLists<M> {
     /// Looks up handles of drawn elements until there are `size` handles of each kind.
     fn extend_to(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
         fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
@@ -263,42 +253,26 @@ pub(crate) fn edge_handle<M: Representation>(
         .expect("a face has an edge for each of its sides")
 }
 
+/// The first elements of the draw: as many of each kind as `size` says.
 struct SampledElements<'c, M: MeshQuery> {
-    drawn: &'c DrawnHandles<M>,
-    scanned: [bool; 3],
+    drawn: &'c HandleLists<M>,
     size: [usize; 3],
 }
 
-impl<M: MeshQuery> SampledElements<'_, M> {
-    /// Returns the sampled `handles` if `kind` is sampled, else all `others`.
-    #[inline(always)]
-    fn pick<'p, H: Copy, I: Iterator<Item = H> + 'p>(
-        &self,
-        kind: ElementKind,
-        handles: &'p [H],
-        others: impl FnOnce() -> I,
-    ) -> impl Iterator<Item = H> + 'p {
-        let k = kind.index();
-        let (some, all) = match self.scanned[k] {
-            true => (Some(&handles[..self.size[k]]), None),
-            false => (None, Some(others())),
-        };
-        let some = some.into_iter().flatten().copied();
-        some.chain(all.into_iter().flatten())
-    }
-}
-
 impl<M: MeshQuery> Elements<M> for SampledElements<'_, M> {
-    fn vertices<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Vertex> + 'a {
-        self.pick(ElementKind::Vertex, &self.drawn.vertices, || {
-            mesh.vertices()
-        })
+    fn vertices<'a>(&'a self, _: &'a M) -> impl Iterator<Item = M::Vertex> + 'a {
+        self.drawn.vertices[..self.size[0]].iter().copied()
     }
-    fn edges<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Edge> + 'a {
-        self.pick(ElementKind::Edge, &self.drawn.edges, || mesh.edges())
+    fn edges<'a>(&'a self, _: &'a M) -> impl Iterator<Item = M::Edge> + 'a {
+        self.drawn.edges[..self.size[1]].iter().copied()
     }
-    fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a {
-        self.pick(ElementKind::Face, &self.drawn.faces, || mesh.faces())
+    fn faces<'a>(&'a self, _: &'a M) -> impl Iterator<Item = M::Face> + 'a {
+        self.drawn.faces[..self.size[2]].iter().copied()
+    }
+    fn query(&self, mesh: &M, relation: Relation) -> SweepResult {
+        let size = self.size[ElementKind::queried_by(relation).index()];
+        let sink = self.drawn.query(mesh, relation, 0..size, Sink::default());
+        sink.finish(size as u64)
     }
 }
 

@@ -5,49 +5,14 @@ use std::ops::Range;
 
 use sixfold::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
 
+use crate::handle_lists::HandleLists;
 use crate::mix::route::Route;
 use crate::operation::ElementKind;
 use crate::sweeps::Sink;
 use crate::timed_structure::edge_handle;
 use crate::workload::Action;
 
-pub(crate) struct RouteHandles<M: MeshQuery> {
-    vertices: Vec<M::Vertex>,
-    edges: Vec<M::Edge>,
-    faces: Vec<M::Face>,
-}
-
-impl<M: MeshQuery> RouteHandles<M> {
-    pub(crate) fn from_mesh(mesh: &M) -> Self {
-        Self {
-            vertices: mesh.vertices().collect(),
-            edges: mesh.edges().collect(),
-            faces: mesh.faces().collect(),
-        }
-    }
-
-    /// Converts the handles to handles of another mesh for the same elements.
-    pub(crate) fn map_handles<N: MeshQuery>(
-        self,
-        vertex: impl FnMut(M::Vertex) -> N::Vertex,
-        edge: impl FnMut(M::Edge) -> N::Edge,
-        face: impl FnMut(M::Face) -> N::Face,
-    ) -> RouteHandles<N> {
-        RouteHandles {
-            vertices: self.vertices.into_iter().map(vertex).collect(),
-            edges: self.edges.into_iter().map(edge).collect(),
-            faces: self.faces.into_iter().map(face).collect(),
-        }
-    }
-
-    pub(crate) fn len(&self, kind: ElementKind) -> usize {
-        match kind {
-            ElementKind::Vertex => self.vertices.len(),
-            ElementKind::Edge => self.edges.len(),
-            ElementKind::Face => self.faces.len(),
-        }
-    }
-
+impl<M: MeshQuery> HandleLists<M> {
     /// Runs `action` for the operations `range`. Returns the number of results or of positions
     /// read.
     #[inline(never)]
@@ -55,23 +20,12 @@ impl<M: MeshQuery> RouteHandles<M> {
         let (v, e, f) = (&self.vertices, &self.edges, &self.faces);
         match action {
             Action::Relation(relation) => {
-                // Each loop is a function of its own, as in `operation::relation::query`.
-                macro_rules! run_relation {
-                    ($query:ident $list:ident $from:ident $to:ident) => {{
-                        #[inline(never)]
-                        fn $query<M: MeshQuery>(
-                            mesh: &M,
-                            elements: &[M::$from],
-                            range: Range<u64>,
-                        ) -> u64 {
-                            count_results(elements, range, |sink, element| {
-                                sink.with(mesh.$query(element))
-                            })
-                        }
-                        $query(mesh, &self.$list, range)
-                    }};
-                }
-                sixfold_core::match_relation!(relation, run_relation!)
+                let all = self.len(ElementKind::queried_by(relation));
+                ranges(all, range)
+                    .fold(Sink::default(), |sink, range| {
+                        self.query(mesh, relation, range, sink)
+                    })
+                    .finish_count()
             }
             Action::Position => sum_positions(v, range, |sum, v| {
                 *sum += mesh.position(v);
@@ -92,12 +46,12 @@ impl<M: MeshQuery> RouteHandles<M> {
     }
 
     /// Returns the vertices of the operations `range`, as slices.
-    pub(crate) fn vertices(&self, range: Range<u64>) -> impl Iterator<Item = &[M::Vertex]> {
-        slices(&self.vertices, range)
+    pub(crate) fn vertices_of(&self, range: Range<u64>) -> impl Iterator<Item = &[M::Vertex]> {
+        ranges(self.vertices.len(), range).map(|range| &self.vertices[range])
     }
 }
 
-impl<M: Representation> RouteHandles<M> {
+impl<M: Representation> HandleLists<M> {
     /// Looks up the handles of `route` on `mesh`, which was built from `polygons`. Leaves out
     /// elements with an `occupied` vertex.
     pub(crate) fn from_route(
@@ -108,7 +62,7 @@ impl<M: Representation> RouteHandles<M> {
     ) -> Self {
         let is_free = |v: &VertexId| !occupied.get(v.index()).is_some_and(|&occupied| occupied);
         if route.structure_order && occupied.is_empty() {
-            return Self::from_mesh(mesh);
+            return Self::of_mesh(mesh);
         }
         if route.structure_order {
             // In the order of the structure, without the elements near an edit.
@@ -116,7 +70,7 @@ impl<M: Representation> RouteHandles<M> {
             for v in polygons.vertices().filter(|v| !is_free(v)) {
                 is_occupied[M::vertex_handle(polygons, v)] = true;
             }
-            let mut handles = Self::from_mesh(mesh);
+            let mut handles = Self::of_mesh(mesh);
             handles.vertices.retain(|&v| !is_occupied[v]);
             handles
                 .edges
@@ -143,10 +97,10 @@ impl<M: Representation> RouteHandles<M> {
     }
 }
 
-/// Returns the handles of the operations `range` as slices. The first handle follows the last
-/// handle.
-fn slices<H>(handles: &[H], range: Range<u64>) -> impl Iterator<Item = &[H]> {
-    let all = handles.len() as u64;
+/// Returns the places in a list of `all` handles that the operations `range` visit, as ranges. The
+/// first handle follows the last handle.
+fn ranges(all: usize, range: Range<u64>) -> impl Iterator<Item = Range<usize>> {
+    let all = all as u64;
     let mut left = if all == 0 { 0 } else { range.end - range.start };
     let mut start = if all == 0 { 0 } else { range.start % all };
     std::iter::from_fn(move || {
@@ -154,24 +108,11 @@ fn slices<H>(handles: &[H], range: Range<u64>) -> impl Iterator<Item = &[H]> {
             return None;
         }
         let end = all.min(start + left);
-        let slice = &handles[start as usize..end as usize];
+        let range = start as usize..end as usize;
         left -= end - start;
         start = 0;
-        Some(slice)
+        Some(range)
     })
-}
-
-#[inline(always)]
-fn count_results<H: Copy>(
-    handles: &[H],
-    range: Range<u64>,
-    query: impl Fn(Sink, H) -> Sink,
-) -> u64 {
-    let mut sink = Sink::default();
-    for slice in slices(handles, range) {
-        sink = slice.iter().fold(sink, |sink, &handle| query(sink, handle));
-    }
-    sink.finish_count()
 }
 
 #[inline(always)]
@@ -181,8 +122,8 @@ fn sum_positions<H: Copy>(
     mut add: impl FnMut(&mut Point, H) -> u64,
 ) -> u64 {
     let (mut sum, mut count) = (Point::ZERO, 0);
-    for slice in slices(handles, range) {
-        slice
+    for range in ranges(handles.len(), range) {
+        handles[range]
             .iter()
             .for_each(|&handle| count += add(&mut sum, handle));
     }
@@ -209,16 +150,10 @@ mod tests {
 
     #[test]
     fn a_route_starts_again_after_its_last_element() {
-        let handles = [0, 1, 2, 3, 4];
-        let visited = |range| {
-            slices(&handles, range)
-                .flatten()
-                .copied()
-                .collect::<Vec<i32>>()
-        };
+        let visited = |range| ranges(5, range).flatten().collect::<Vec<usize>>();
         assert_eq!(visited(3..9), [3, 4, 0, 1, 2, 3]);
         assert_eq!(visited(10..10), [0; 0]);
         assert_eq!(visited(12..14), [2, 3]);
-        assert_eq!(slices(&[0; 0], 3..9).count(), 0);
+        assert_eq!(ranges(0, 3..9).count(), 0);
     }
 }

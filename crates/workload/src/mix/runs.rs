@@ -11,12 +11,11 @@ pub(crate) type Counts = [u64; 3];
 
 /// Runs the operations on elements of some turns. `range_of` returns the operations of a part in a
 /// turn, and `run_range` runs them.
-#[inline]
 pub(crate) fn run_turns(
     parts: usize,
     turns: Range<u64>,
-    range_of: impl Fn(usize, u64) -> Range<u64>,
-    mut run_range: impl FnMut(usize, Range<u64>) -> Counts,
+    range_of: &dyn Fn(usize, u64) -> Range<u64>,
+    run_range: &mut dyn FnMut(usize, Range<u64>) -> Counts,
 ) -> Counts {
     let mut sums = [0; 3];
     for turn in turns {
@@ -34,20 +33,19 @@ pub(crate) fn run_turns(
 }
 
 /// Times turns of a mix from turn `first`, as `series` describes; one run is one turn.
-#[inline]
 pub(crate) fn time_turns(
     schedule: &Schedule,
     first: u64,
     series: &Series<'_>,
-    mut run_range: impl FnMut(usize, Range<u64>) -> Counts,
+    run_range: &mut dyn FnMut(usize, Range<u64>) -> Counts,
 ) -> Run {
     let parts = schedule.parts.len();
     let range_of = |part, turn| schedule.turn_range(part, turn);
     let timed = first + u64::from(series.untimed);
-    run_turns(parts, first..timed, range_of, &mut run_range);
+    run_turns(parts, first..timed, &range_of, run_range);
     let mut counts = [0; 3];
     let turns = timed..timed + u64::from(series.runs);
-    let time = series.timed(|| counts = run_turns(parts, turns, range_of, &mut run_range));
+    let time = series.timed(|| counts = run_turns(parts, turns, &range_of, run_range));
     let [operations, yielded, _] = counts;
     // Turns have equal numbers of operations except for rounding.
     let each = time.scaled(schedule.turn_operations / operations.max(1) as f64);
@@ -61,12 +59,11 @@ pub(crate) fn time_turns(
 
 /// Times operations of one part alone from operation `first`, as `series` describes; one run is one
 /// operation. The result is that of all operations `all`; `None` if they would take too long.
-#[inline]
 pub(crate) fn time_part(
     first: u64,
     series: &Series<'_>,
     all: Option<u64>,
-    mut run_range: impl FnMut(Range<u64>) -> Counts,
+    run_range: &mut dyn FnMut(Range<u64>) -> Counts,
 ) -> Run {
     let timed = first + u64::from(series.untimed);
     if series.untimed > 0 {

@@ -12,11 +12,11 @@ use sixfold_core::EditOf;
 use crate::backend::Backend;
 use crate::draw::Draw;
 use crate::edit_place::prepare_edit;
+use crate::handle_lists::HandleLists;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::places::{EditPlaceError, EditPlaces};
 use crate::mix::route::Route;
-use crate::mix::route_handles::RouteHandles;
 use crate::mix::runs::{Counts, run_turns, time_part, time_turns};
 use crate::mix::schedule::Schedule;
 use crate::mix::{MixBackend, NO_PROGRAM};
@@ -163,7 +163,7 @@ impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
 /// The work of a mix: the schedule, the handles of the route, and the places of the edits.
 struct Work<'a, M: Representation, W> {
     schedule: &'a Schedule,
-    handles: RouteHandles<M>,
+    handles: HandleLists<M>,
     own_memory: OwnMemory,
     faces: EditPlaces,
     /// For each edit of the schedule, the edits at its places on a mesh prepared for them.
@@ -181,12 +181,12 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
     /// Runs the operations `range` of one part on `mesh`. If the part is an edit, `range` contains
     /// the indices of the faces at which the edit is done. Returns the numbers of operations,
     /// results and refused edits.
-    #[inline]
+    #[inline(never)]
     fn run_range(&self, mesh: &mut M, part: usize, range: Range<u64>) -> Counts {
         let operations = range.end - range.start;
         match self.schedule.parts[part].action {
             Action::SetPosition => {
-                for run in self.handles.vertices(range) {
+                for run in self.handles.vertices_of(range) {
                     run.iter().for_each(|&v| {
                         let at = mesh.position(v);
                         W::set_position(mesh, v, at);
@@ -211,7 +211,6 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
 
     /// Runs the operations `range` of one part, and visits the program's own data of the same
     /// elements. Returns the same counts as [`run_range`](Self::run_range).
-    #[inline]
     fn run_with_data(&self, mesh: &mut M, part: usize, range: Range<u64>) -> Counts {
         let kind = self.schedule.parts[part].action.kind();
         self.own_memory.visit(kind, range.clone());
@@ -220,7 +219,6 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
 
     /// Runs the element operations of some turns. Returns the same counts as
     /// [`run_range`](Self::run_range). Edits start at their first place.
-    #[inline]
     fn run_turns_on_copy(&self, mesh: &mut M, turns: Range<u64>) -> Counts {
         let schedule = self.schedule;
         let range_of = |part: usize, turn: u64| {
@@ -230,8 +228,8 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
         run_turns(
             schedule.parts.len(),
             turns.clone(),
-            range_of,
-            |part, range| self.run_with_data(mesh, part, range),
+            &range_of,
+            &mut |part, range| self.run_with_data(mesh, part, range),
         )
     }
 
@@ -282,7 +280,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         let faces = EditPlaces::new(input.schedule, input.polygons)?;
         let work = Work {
             schedule: input.schedule,
-            handles: RouteHandles::from_route(input.route, &mesh, input.polygons, &faces.occupied),
+            handles: HandleLists::from_route(input.route, &mesh, input.polygons, &faces.occupied),
             own_memory: OwnMemory::new(
                 &input.schedule.own_data,
                 input.route,
@@ -340,7 +338,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         let Self { timed, work, .. } = self;
         if self.prepared.is_none() {
             let mesh = black_box(&mut timed.mesh);
-            return time_turns(work.schedule, first, series, |part, range| {
+            return time_turns(work.schedule, first, series, &mut |part, range| {
                 work.run_with_data(mesh, part, range)
             });
         }
@@ -382,7 +380,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
             let mesh = black_box(&mut self.timed.mesh);
             let scans = work.scans(&work.schedule.parts[part]);
             let all = (!scans).then(|| work.cycle_length(part));
-            return time_part(first, series, all, |range| {
+            return time_part(first, series, all, &mut |range| {
                 work.run_range(mesh, part, range)
             });
         };

@@ -7,10 +7,10 @@ use sixfold::{MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation
 use sixfold_relation_table::Numbering;
 
 use crate::backend::Backend;
+use crate::handle_lists::HandleLists;
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::route::Route;
-use crate::mix::route_handles::RouteHandles;
 use crate::mix::runs::{Counts, time_part, time_turns};
 use crate::mix::schedule::Schedule;
 use crate::mix::{MixBackend, NO_PROGRAM};
@@ -74,8 +74,8 @@ fn route_handles<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
     route: &Route,
-) -> RouteHandles<Tables> {
-    let handles = RouteHandles::from_route(route, mesh, polygons, &[]);
+) -> HandleLists<Tables> {
+    let handles = HandleLists::from_route(route, mesh, polygons, &[]);
     let numbers = Numbering::new(mesh);
     handles.map_handles(
         |v| numbers.vertex(v),
@@ -87,7 +87,7 @@ fn route_handles<M: Representation>(
 struct TableMix<'a> {
     tables: Tables,
     schedule: &'a Schedule,
-    handles: RouteHandles<Tables>,
+    handles: HandleLists<Tables>,
     own_memory: OwnMemory,
     outputs: Outputs<Tables>,
     moved: Vec<Point>,
@@ -135,14 +135,14 @@ impl TableMix<'_> {
 /// refused edits: tables have no edits.
 fn run_range(
     tables: &mut Tables,
-    handles: &RouteHandles<Tables>,
+    handles: &HandleLists<Tables>,
     action: Action,
     range: Range<u64>,
 ) -> Counts {
     let operations = range.end - range.start;
     match action {
         Action::SetPosition => {
-            for run in handles.vertices(range) {
+            for run in handles.vertices_of(range) {
                 for v in run {
                     let at = &mut tables.positions[v.index()];
                     *at = black_box(*at);
@@ -187,14 +187,14 @@ impl TimedBackend for TableMix<'_> {
         match job.task {
             Task::Operation(Operation::Build) => self.build(series),
             Task::Operation(operation) => self.run_pass(operation, series),
-            Task::Mix => time_turns(schedule, job.first, series, |part, range| {
+            Task::Mix => time_turns(schedule, job.first, series, &mut |part, range| {
                 own_memory.visit(parts[part].action.kind(), range.clone());
                 run_range(tables, handles, parts[part].action, range)
             }),
             Task::Part(part) => {
                 let action = parts[part].action;
                 let all = action.kind().map_or(1, |kind| handles.len(kind) as u64);
-                time_part(job.first, series, Some(all), |range| {
+                time_part(job.first, series, Some(all), &mut |range| {
                     run_range(tables, handles, action, range)
                 })
             }

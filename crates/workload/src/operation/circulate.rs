@@ -2,7 +2,7 @@
 
 use sixfold::{MeshQuery, Relation};
 
-use super::{Description, ElementKind, Unit, relation};
+use super::{Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult};
 
 pub(super) const DESCRIPTION: Description = Description {
@@ -24,6 +24,6 @@ pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
         ElementKind::Vertex => Relation::VertexFaces,
         _ => Relation::FaceVertices,
     };
-    relation::query(queried, mesh, elements)
+    elements.query(mesh, queried)
 }
 

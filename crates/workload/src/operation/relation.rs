@@ -3,7 +3,7 @@
 use sixfold::{MeshQuery, Relation};
 
 use super::{Description, ElementKind, Unit, Visits};
-use crate::sweeps::{Elements, SweepResult, query_each};
+use crate::sweeps::{SweepResult, query_each};
 
 /// The description of each relation, in the order of [`Relation::ALL`].
 pub(super) const DESCRIPTIONS: [Description; 9] = [
@@ -71,31 +71,27 @@ const fn describe(relation: Relation, about: &'static str, visits: Visits) -> De
 /// of a half-edge mesh then took 1.57 ns for a face instead of 1.42. `benches/checks/plain_program.py`
 /// compares each loop with a program of a user.
 #[inline]
-pub(super) fn query<M: MeshQuery, E: Elements<M>>(
-    relation: Relation,
-    mesh: &M,
-    elements: &E,
-) -> SweepResult {
+pub(crate) fn query_all<M: MeshQuery>(relation: Relation, mesh: &M) -> SweepResult {
     macro_rules! sweep_relation {
         (edge_vertices $list:ident $from:ident $to:ident) => {{
             // Programs of users take the array of the two ends apart.
             #[inline(never)]
-            fn edge_vertices<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-                query_each(elements.$list(mesh), |sink, element| {
+            fn edge_vertices<M: MeshQuery>(mesh: &M) -> SweepResult {
+                query_each(mesh.$list(), |sink, element| {
                     let [a, b] = mesh.edge_vertices(element);
                     sink.with_one(a).with_one(b)
                 })
             }
-            edge_vertices(mesh, elements)
+            edge_vertices(mesh)
         }};
         ($query:ident $list:ident $from:ident $to:ident) => {{
             #[inline(never)]
-            fn $query<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepResult {
-                query_each(elements.$list(mesh), |sink, element| {
+            fn $query<M: MeshQuery>(mesh: &M) -> SweepResult {
+                query_each(mesh.$list(), |sink, element| {
                     sink.with(mesh.$query(element))
                 })
             }
-            $query(mesh, elements)
+            $query(mesh)
         }};
     }
     sixfold_core::match_relation!(relation, sweep_relation!)

@@ -11,6 +11,7 @@ use sixfold::{
 use sixfold_core::{EditOf, ElementNames};
 
 use super::{ALL, Call, Op, Trace, TracedEdit};
+use crate::handle_lists::HandleLists;
 use crate::job::Outcome;
 use crate::operation::ElementKind;
 use crate::program::Form;
@@ -31,9 +32,7 @@ struct Group {
 /// A trace in the handles of one structure.
 pub(crate) struct Replay<M: MeshQuery> {
     groups: Vec<Group>,
-    vertices: Vec<M::Vertex>,
-    edges: Vec<M::Edge>,
-    faces: Vec<M::Face>,
+    handles: HandleLists<M>,
     edits: Vec<EditOf<M>>,
     /// The positions that [`Op::SetPositions`] writes: those of the mesh.
     positions: Option<VertexMap<M, Point>>,
@@ -78,9 +77,7 @@ impl<M: MeshQuery> Replay<M> {
     fn new() -> Self {
         Self {
             groups: Vec::new(),
-            vertices: Vec::new(),
-            edges: Vec::new(),
-            faces: Vec::new(),
+            handles: HandleLists::default(),
             edits: Vec::new(),
             positions: None,
             calls: 0,
@@ -104,18 +101,18 @@ impl<M: MeshQuery> Replay<M> {
     }
 
     fn push_vertex(&mut self, call: Call, v: M::Vertex) {
-        self.vertices.push(v);
-        self.push(call.op, call.taken, self.vertices.len() - 1);
+        self.handles.vertices.push(v);
+        self.push(call.op, call.taken, self.handles.vertices.len() - 1);
     }
 
     fn push_edge(&mut self, call: Call, e: M::Edge) {
-        self.edges.push(e);
-        self.push(call.op, call.taken, self.edges.len() - 1);
+        self.handles.edges.push(e);
+        self.push(call.op, call.taken, self.handles.edges.len() - 1);
     }
 
     fn push_face(&mut self, call: Call, f: M::Face) {
-        self.faces.push(f);
-        self.push(call.op, call.taken, self.faces.len() - 1);
+        self.handles.faces.push(f);
+        self.push(call.op, call.taken, self.handles.faces.len() - 1);
     }
 
     /// Adds a query or the reading of a position. `edge` finds the edge with the given ends.
@@ -167,30 +164,18 @@ impl<M: MeshQuery> Replay<M> {
         let mut sink = Sink::default();
         let mut sum = Point::ZERO;
         let mut positions = 0;
-        macro_rules! query {
-            ($handles:ident, $query:ident, $group:expr) => {{
-                let handles = self.$handles[$group.range.clone()].iter();
-                sink = match $group.taken {
-                    ALL => handles.fold(sink, |sink, &h| sink.with(mesh.$query(h))),
-                    n => handles.fold(sink, |sink, &h| {
-                        sink.with(mesh.$query(h).into_iter().take(n as usize))
-                    }),
-                }
-            }};
-        }
         for group in &self.groups {
             let taken = group.taken as usize;
             match group.op {
                 Op::Query(relation) => {
-                    macro_rules! query_group {
-                        ($query:ident $list:ident $from:ident $to:ident) => {
-                            query!($list, $query, group)
-                        };
-                    }
-                    sixfold_core::match_relation!(relation, query_group!);
+                    let range = group.range.clone();
+                    sink = match group.taken {
+                        ALL => self.handles.query(mesh, relation, range, sink),
+                        _ => self.handles.query_first(mesh, relation, range, taken, sink),
+                    };
                 }
                 Op::Position => {
-                    for &v in &self.vertices[group.range.clone()] {
+                    for &v in &self.handles.vertices[group.range.clone()] {
                         sum += mesh.position(v);
                     }
                     positions += group.range.len() as u64;
@@ -263,9 +248,9 @@ pub(super) fn handles<M: Representation>(
     }
     let replay = translate(trace, mesh, polygons)?;
     Ok([
-        text(&replay.vertices),
-        text(&replay.edges),
-        text(&replay.faces),
+        text(&replay.handles.vertices),
+        text(&replay.handles.edges),
+        text(&replay.handles.faces),
     ])
 }
 
