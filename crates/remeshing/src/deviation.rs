@@ -204,7 +204,7 @@ impl Region {
                 }
             }
         }
-        region.faces.sort_by_key(|&(v, _)| v);
+        region.faces.sort_by_key(vertex_of);
         region
     }
 
@@ -214,4 +214,9 @@ impl Region {
         let faces = self.faces[first..].iter().copied();
         faces.take_while(move |&(v, _)| v == vertex)
     }
+}
+
+/// A function of its own, so that the sort is compiled once for all structures.
+fn vertex_of(&(v, _): &(u32, [DVec3; 3])) -> u32 {
+    v
 }

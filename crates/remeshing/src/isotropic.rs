@@ -384,7 +384,7 @@ impl<M: MeshEdit> Work<M> {
                     (ends, (p - from).cross(q - from), p)
                 })
                 .collect();
-            fan.sort_unstable_by_key(|&(ends, ..)| ends);
+            fan.sort_unstable_by_key(ends_of);
             let normal: DVec3 = fan.iter().map(|&(_, cross, _)| cross).sum();
             let middle = fan.iter().map(|&(.., p)| p).sum::<DVec3>() / fan.len() as f64;
             let Some(normal) = normal.try_normalize().filter(|_| !fan.is_empty()) else {
@@ -404,6 +404,11 @@ impl<M: MeshEdit> Work<M> {
         }
         longest
     }
+}
+
+/// A function of its own, so that the sort is compiled once for all structures.
+fn ends_of(&(ends, ..): &([u32; 2], DVec3, DVec3)) -> [u32; 2] {
+    ends
 }
 
 /// Returns the normal of a face; its length is twice the area.

@@ -25,10 +25,14 @@ use crate::mask::Mask;
 pub(crate) struct CatmullClark;
 
 impl Mask for CatmullClark {
-    const SPLIT: Split = Split::Quads;
     const APPROXIMATES: bool = true;
     const EDGES_USE_FACES: bool = true;
     const VERTICES_USE_FACES: bool = true;
+
+    #[inline(always)]
+    fn split(self) -> Split {
+        Split::Quads
+    }
 
     #[inline(always)]
     fn face(self, corners: Point, degree: usize) -> Point {

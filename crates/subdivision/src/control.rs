@@ -1,5 +1,7 @@
 //! Creases of the control mesh, and the faces of the control mesh that the boundary rule removes.
 
+use std::cmp::Ordering;
+
 use sixfold_core::{
     Creases, EdgeUse, Pair, PolygonMesh, Representation, SHARPNESS_INFINITE, VertexId,
 };
@@ -183,9 +185,14 @@ pub fn renumbered<M: Representation>(
         *v = number(*v);
     }
     // `from_entries` uses the last of several entries for one element.
-    edges.sort_by(|a, b| a.1.total_cmp(&b.1));
-    corners.sort_by(|a, b| a.1.total_cmp(&b.1));
+    edges.sort_by(by_sharpness);
+    corners.sort_by(by_sharpness);
     Creases::from_entries(edges, corners)
+}
+
+/// A function of its own, so that the sort is compiled once for all structures.
+fn by_sharpness<E>(a: &(E, f32), b: &(E, f32)) -> Ordering {
+    a.1.total_cmp(&b.1)
 }
 
 #[cfg(test)]

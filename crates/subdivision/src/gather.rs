@@ -22,7 +22,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     creasing: Creasing,
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
-    let mut builder = StepBuilder::new(K::SPLIT, mesh, corners);
+    let mut builder = StepBuilder::new(mask.split(), mesh, corners);
     // The map is needed only if face values are used.
     let mut values: FaceMap<M, Point> = HandleMap::filled(0, Point::ZERO);
     if K::EDGES_USE_FACES || K::VERTICES_USE_FACES || builder.has_face_points() {

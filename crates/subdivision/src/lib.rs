@@ -17,7 +17,6 @@
 //! The weights of each scheme are in the file of the scheme. The file `crease.rs` computes the
 //! points at sharp edges and vertices for every scheme with creases.
 
-mod bilinear;
 mod butterfly;
 mod catmull_clark;
 mod connectivity;
@@ -30,11 +29,11 @@ mod extent;
 mod gather;
 mod levels;
 mod limit;
+mod linear;
 mod local;
 mod loop_scheme;
 mod manifold;
 mod mask;
-mod midpoint;
 mod native;
 mod options;
 mod patch;

@@ -59,13 +59,17 @@ pub(crate) fn beta(weights: LoopWeights, valence: usize) -> f64 {
 }
 
 impl Mask for Loop {
-    const SPLIT: Split = Split::Triangles;
     const APPROXIMATES: bool = true;
     const EDGES_USE_FACES: bool = true;
     const VERTICES_USE_FACES: bool = false;
 
     /// Returns the sum of the corners. The sums of the two faces at an edge contain each end twice
     /// and each far corner once.
+    #[inline(always)]
+    fn split(self) -> Split {
+        Split::Triangles
+    }
+
     #[inline(always)]
     fn face(self, corners: Point, _: usize) -> Point {
         corners

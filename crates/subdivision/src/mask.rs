@@ -7,7 +7,6 @@ use sixfold_core::{Point, Split};
 /// Gather, scatter and native compute the sums in different ways, but use the same rules. A *face
 /// value* is what the scheme needs to know about a face, for example the centroid.
 pub(crate) trait Mask: Copy + Sync {
-    const SPLIT: Split;
     /// Whether old vertices move. If this is false, all edge points are midpoints, and `vertex` is
     /// not called.
     const APPROXIMATES: bool;
@@ -15,6 +14,9 @@ pub(crate) trait Mask: Copy + Sync {
     const EDGES_USE_FACES: bool;
     /// Whether `vertex` uses face values.
     const VERTICES_USE_FACES: bool;
+
+    /// Returns the split of the faces.
+    fn split(self) -> Split;
 
     /// Returns the face value of a face with `degree` corners. `corners` is the sum of the corners.
     /// If the split has face points, the face value is the face point.

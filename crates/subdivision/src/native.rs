@@ -24,15 +24,19 @@ pub(crate) fn step<M: Refine, K: Mask>(
     numbers: &M::EdgeNumbers,
     child: &mut M,
 ) -> Result<Creases, SubdivisionError> {
-    mesh.split_into(K::SPLIT, numbers, child)?;
+    mesh.split_into(mask.split(), numbers, child)?;
     let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
-    let face_points = if K::SPLIT == Split::Quads { faces } else { 0 };
+    let face_points = if mask.split() == Split::Quads {
+        faces
+    } else {
+        0
+    };
     let first_edge = vertices + face_points;
     let (old, rest) = child.positions_mut().split_at_mut(vertices);
     let (face_points, edge_points) = rest.split_at_mut(face_points);
     compute_rows(face_points, |f| face_value(mesh, mask, f));
     let face_points = &*face_points;
-    let value = |f: FaceId| match K::SPLIT {
+    let value = |f: FaceId| match mask.split() {
         Split::Quads => face_points[f.index()],
         // Stored face values would be faster, but would need too much memory.
         _ => face_value(mesh, mask, f),

@@ -46,7 +46,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     creasing: Creasing,
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
-    let mut builder = StepBuilder::new(K::SPLIT, mesh, corners);
+    let mut builder = StepBuilder::new(mask.split(), mesh, corners);
     let numbers = number_vertices(mesh, &mut builder);
     let vertices = builder.points.len();
     if builder.has_face_points() {

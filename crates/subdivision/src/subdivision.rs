@@ -2,11 +2,10 @@
 
 use sixfold_core::{Creases, FaceId, MAX_ROWS, MeshQuery, PolygonError, Refine, Split};
 
-use crate::bilinear::Bilinear;
 use crate::catmull_clark::CatmullClark;
 use crate::error::SubdivisionError;
+use crate::linear::Linear;
 use crate::loop_scheme::Loop;
-use crate::midpoint::Midpoint;
 use crate::options::{BoundaryRule, Creasing, LoopWeights};
 use crate::scheme::{FaceKind, Method, Scheme};
 use crate::step::Step;
@@ -18,8 +17,8 @@ macro_rules! by_mask {
         match $self.scheme {
             Scheme::CatmullClark => { let $mask = CatmullClark; $step }
             Scheme::Loop => { let $mask = Loop::new($self.loop_weights); $step }
-            Scheme::Midpoint => { let $mask = Midpoint; $step }
-            Scheme::Bilinear => { let $mask = Bilinear; $step }
+            Scheme::Midpoint => { let $mask = Linear(Split::Triangles); $step }
+            Scheme::Bilinear => { let $mask = Linear(Split::Quads); $step }
             $($others)*
         }
     };
