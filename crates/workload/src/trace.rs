@@ -13,7 +13,7 @@ use sixfold_core::EditByName;
 
 use crate::operation::ElementKind;
 
-pub(crate) use replay::{EditReplay, MoveReplay, QueryReplay};
+pub(crate) use replay::{EditReplay, PlainReplay};
 pub use text::TraceError;
 
 /// The calls of one run of a program.

@@ -16,8 +16,8 @@ pub(crate) trait Form {
     /// The scratch data.
     type Scratch;
 
-    /// True if a run changes the mesh, so that each run needs a fresh copy.
-    const CHANGES_MESH: bool;
+    /// Returns whether a run changes the mesh, so that each run needs a fresh copy.
+    fn changes_mesh(program: &Self::Program) -> bool;
 
     /// Makes the scratch data. `polygons` is the mesh from which `mesh` was built.
     fn set_up(
@@ -41,7 +41,9 @@ macro_rules! form {
             type Mesh = M;
             type Scratch = P::Scratch<M>;
 
-            const CHANGES_MESH: bool = $changes;
+            fn changes_mesh(_: &P) -> bool {
+                $changes
+            }
 
             fn set_up(
                 program: &P,

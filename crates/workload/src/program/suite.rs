@@ -15,7 +15,7 @@ use super::subject::{ProgramRefusal, RecordedRun, Subject, record};
 use super::{EditProgram, MovingProgram, Program, RefineProgram, WalkProgram};
 use crate::job::TimedBackend;
 use crate::tables::{TABLE_TYPE, TABLES};
-use crate::trace::{EditReplay, MoveReplay, QueryReplay, Trace, TraceKind};
+use crate::trace::{EditReplay, PlainReplay, Trace, TraceKind};
 
 /// Programs that are measured one after the other.
 ///
@@ -92,25 +92,22 @@ impl Suite {
         let own_ns = trace.own_ns;
         let trace = Arc::new(trace);
         let mut contestants = Vec::new();
-        let kind = match kind {
-            TraceKind::Queries => {
+        match kind {
+            TraceKind::Queries | TraceKind::Moves => {
                 for_each_representation!(M => {
-                    contestants.push(Contestant::new::<QueryReplay<M>>(&trace));
+                    contestants.push(Contestant::new::<PlainReplay<M>>(&trace));
                 });
-                ProgramKind::Queries
-            }
-            TraceKind::Moves => {
-                for_each_representation!(M => {
-                    contestants.push(Contestant::new::<MoveReplay<M>>(&trace));
-                });
-                ProgramKind::Moves
             }
             TraceKind::Edits => {
                 for_each_editable!(M => {
                     contestants.push(Contestant::new::<EditReplay<M>>(&trace));
                 });
-                ProgramKind::Edits
             }
+        }
+        let kind = match kind {
+            TraceKind::Queries => ProgramKind::Queries,
+            TraceKind::Moves => ProgramKind::Moves,
+            TraceKind::Edits => ProgramKind::Edits,
         };
         let mut suite = self.with(name, kind, contestants);
         if let Some(program) = suite.programs.last_mut() {

@@ -6,11 +6,12 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use sixfold::{
-    Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Representation, VertexMap,
+    Edit, EditRecord, Handle, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Representation,
+    VertexMap,
 };
 use sixfold_core::{EditOf, ElementNames};
 
-use super::{ALL, Call, Op, Trace, TracedEdit};
+use super::{ALL, Call, Op, Trace, TraceKind, TracedEdit};
 use crate::handle_lists::HandleLists;
 use crate::job::Outcome;
 use crate::operation::ElementKind;
@@ -36,6 +37,15 @@ pub(crate) struct Replay<M: MeshQuery> {
     edits: Vec<EditOf<M>>,
     /// The positions that [`Op::SetPositions`] writes: those of the mesh.
     positions: Option<VertexMap<M, Point>>,
+    calls: u64,
+}
+
+/// The calls of a trace, translated so far. Structures with the same handles share this code.
+struct Calls<V, E, F> {
+    groups: Vec<Group>,
+    vertices: Vec<V>,
+    edges: Vec<E>,
+    faces: Vec<F>,
     calls: u64,
 }
 
@@ -73,13 +83,13 @@ impl Trace {
     }
 }
 
-impl<M: MeshQuery> Replay<M> {
+impl<V: Handle, E: Handle, F: Handle> Calls<V, E, F> {
     fn new() -> Self {
         Self {
             groups: Vec::new(),
-            handles: HandleLists::default(),
-            edits: Vec::new(),
-            positions: None,
+            vertices: Vec::new(),
+            edges: Vec::new(),
+            faces: Vec::new(),
             calls: 0,
         }
     }
@@ -100,57 +110,61 @@ impl<M: MeshQuery> Replay<M> {
         });
     }
 
-    fn push_vertex(&mut self, call: Call, v: M::Vertex) {
-        self.handles.vertices.push(v);
-        self.push(call.op, call.taken, self.handles.vertices.len() - 1);
-    }
-
-    fn push_edge(&mut self, call: Call, e: M::Edge) {
-        self.handles.edges.push(e);
-        self.push(call.op, call.taken, self.handles.edges.len() - 1);
-    }
-
-    fn push_face(&mut self, call: Call, f: M::Face) {
-        self.handles.faces.push(f);
-        self.push(call.op, call.taken, self.handles.faces.len() - 1);
-    }
-
     /// Adds a query or the reading of a position. `edge` finds the edge with the given ends.
-    fn push_query<V, F>(
+    fn push_query(
         &mut self,
         nth: usize,
         call: Call,
         names: &ElementNames<V, F>,
-        edge: impl FnOnce([u32; 2]) -> Option<M::Edge>,
-    ) -> Result<(), String>
-    where
-        M: MeshQuery<Vertex = V, Face = F>,
-        V: sixfold::Handle,
-        F: sixfold::Handle,
-    {
+        edge: &dyn Fn([u32; 2]) -> Option<E>,
+    ) -> Result<(), String> {
         let [a, b] = call.name;
         let kind = match call.op {
             Op::Query(relation) => ElementKind::queried_by(relation),
             _ => ElementKind::Vertex,
         };
-        match kind {
+        let place = match kind {
             ElementKind::Vertex => {
                 let v = names.vertex(a);
-                self.push_vertex(call, v.ok_or_else(|| missing(nth, &format!("vertex {a}")))?);
+                self.vertices
+                    .push(v.ok_or_else(|| missing(nth, &format!("vertex {a}")))?);
+                self.vertices.len() - 1
             }
             ElementKind::Edge => {
                 let e = edge(call.name);
-                self.push_edge(
-                    call,
-                    e.ok_or_else(|| missing(nth, &format!("edge {a}-{b}")))?,
-                );
+                self.edges
+                    .push(e.ok_or_else(|| missing(nth, &format!("edge {a}-{b}")))?);
+                self.edges.len() - 1
             }
             ElementKind::Face => {
                 let f = names.face(a);
-                self.push_face(call, f.ok_or_else(|| missing(nth, &format!("face {a}")))?);
+                self.faces
+                    .push(f.ok_or_else(|| missing(nth, &format!("face {a}")))?);
+                self.faces.len() - 1
             }
-        }
+        };
+        self.push(call.op, call.taken, place);
         Ok(())
+    }
+}
+
+impl<M: MeshQuery> Replay<M> {
+    fn new(
+        calls: Calls<M::Vertex, M::Edge, M::Face>,
+        edits: Vec<EditOf<M>>,
+        positions: Option<VertexMap<M, Point>>,
+    ) -> Self {
+        Self {
+            groups: calls.groups,
+            handles: HandleLists {
+                vertices: calls.vertices,
+                edges: calls.edges,
+                faces: calls.faces,
+            },
+            edits,
+            positions,
+            calls: calls.calls,
+        }
     }
 
     /// Runs all calls. `edit` does an edit; `set_positions` writes positions.
@@ -209,12 +223,7 @@ fn translate<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Result<Replay<M>, String> {
     trace.check(polygons, &M::COSTS)?;
-    let translation = Translation {
-        trace,
-        mesh,
-        names: &ElementNames::new::<M>(polygons),
-        ends: ends_of_lists(&trace.calls),
-    };
+    let names = &ElementNames::new::<M>(polygons);
     let is_edge = |call: &Call| match call.op {
         Op::Query(relation) => ElementKind::queried_by(relation) == ElementKind::Edge,
         Op::List(kind) => kind == ElementKind::Edge,
@@ -222,18 +231,38 @@ fn translate<M: Representation>(
     };
     let names_edges = trace.calls.iter().any(is_edge);
     let edges = mesh.edges().filter(|_| names_edges);
-    let named = |e| Some((translation.names.edge_numbers(mesh.edge_vertices(e))?, e));
-    let edges: HashMap<[u32; 2], M::Edge> = edges.filter_map(named).collect();
-    let mut replay = Replay::new();
-    translation.add(&mut replay, &edges, 0..trace.calls.len())?;
-    if trace.calls.iter().any(|call| call.op == Op::SetPositions) {
+    let named = |e| Some((names.edge_numbers(mesh.edge_vertices(e))?, e));
+    let translation = Translation {
+        trace,
+        names,
+        edges: edges.filter_map(named).collect(),
+        in_order: &|kind| match kind {
+            ElementKind::Vertex => {
+                let numbers = mesh.vertices().map(|v| Some([names.vertex_number(v)?, 0]));
+                numbers.collect()
+            }
+            ElementKind::Edge => {
+                let ends = mesh.edges().map(|e| mesh.edge_vertices(e));
+                ends.map(|ends| names.edge_numbers(ends)).collect()
+            }
+            ElementKind::Face => {
+                let numbers = mesh.faces().map(|f| Some([names.face_number(f)?, 0]));
+                numbers.collect()
+            }
+        },
+        ends: ends_of_lists(&trace.calls),
+    };
+    let mut calls = Calls::new();
+    translation.add(&mut calls, 0..trace.calls.len())?;
+    let moves = trace.calls.iter().any(|call| call.op == Op::SetPositions);
+    let positions = moves.then(|| {
         let mut positions = mesh.vertex_map(Point::ZERO);
         for v in mesh.vertices() {
             positions[v] = mesh.position(v);
         }
-        replay.positions = Some(positions);
-    }
-    Ok(replay)
+        positions
+    });
+    Ok(Replay::new(calls, Vec::new(), positions))
 }
 
 /// Returns the handles of a trace without edits, by kind, as text.
@@ -255,37 +284,36 @@ pub(super) fn handles<M: Representation>(
 }
 
 /// What the translation of a trace without edits reads.
-struct Translation<'t, M: MeshQuery> {
+struct Translation<'t, V, E, F> {
     trace: &'t Trace,
-    mesh: &'t M,
-    names: &'t ElementNames<M::Vertex, M::Face>,
+    names: &'t ElementNames<V, F>,
+    /// The edges by the numbers of their ends; empty if the trace names no edge.
+    edges: HashMap<[u32; 2], E>,
+    /// Returns the names of all elements of a kind, in the order of the structure.
+    in_order: &'t dyn Fn(ElementKind) -> Vec<Option<[u32; 2]>>,
     /// For each call that starts a list, the call that ends it.
     ends: HashMap<usize, usize>,
 }
 
-impl<M: MeshQuery> Translation<'_, M> {
+impl<V: Handle, E: Handle, F: Handle> Translation<'_, V, E, F> {
     /// Adds the calls `range`.
-    fn add(
-        &self,
-        replay: &mut Replay<M>,
-        edges: &HashMap<[u32; 2], M::Edge>,
-        range: Range<usize>,
-    ) -> Result<(), String> {
+    fn add(&self, calls: &mut Calls<V, E, F>, range: Range<usize>) -> Result<(), String> {
         let mut nth = range.start;
         while nth < range.end {
             let call = self.trace.calls[nth];
             match call.op {
                 Op::List(kind) => {
-                    replay.push(call.op, call.taken, 0);
+                    calls.push(call.op, call.taken, 0);
                     if call.taken == ALL {
-                        self.add_items(replay, edges, kind, nth)?;
+                        self.add_items(calls, kind, nth)?;
                         nth = self.ends[&nth];
                     }
                 }
                 Op::Item | Op::End | Op::Edit => {}
-                Op::SetPositions => replay.push(call.op, ALL, 0),
+                Op::SetPositions => calls.push(call.op, ALL, 0),
                 Op::Query(_) | Op::Position => {
-                    replay.push_query(nth, call, self.names, |ends| edges.get(&ends).copied())?;
+                    let edge = |ends| self.edges.get(&ends).copied();
+                    calls.push_query(nth, call, self.names, &edge)?;
                 }
             }
             nth += 1;
@@ -297,8 +325,7 @@ impl<M: MeshQuery> Translation<'_, M> {
     /// structure.
     fn add_items(
         &self,
-        replay: &mut Replay<M>,
-        edges: &HashMap<[u32; 2], M::Edge>,
+        calls: &mut Calls<V, E, F>,
         kind: ElementKind,
         list: usize,
     ) -> Result<(), String> {
@@ -318,37 +345,23 @@ impl<M: MeshQuery> Translation<'_, M> {
             }
             nth += 1;
             if let Some(name) = current
-                && let Some(calls) = items.get_mut(&name)
+                && let Some(range) = items.get_mut(&name)
             {
-                calls.end = nth;
+                range.end = nth;
             }
         }
-        items.retain(|_, calls| calls.start < calls.end);
+        items.retain(|_, range| range.start < range.end);
         if items.is_empty() {
             return Ok(());
         }
-        let names: Box<dyn Iterator<Item = [u32; 2]> + '_> = match kind {
-            ElementKind::Vertex => {
-                let names = self.mesh.vertices();
-                Box::new(names.filter_map(|v| Some([self.names.vertex_number(v)?, 0])))
-            }
-            ElementKind::Edge => {
-                let ends = self.mesh.edges().map(|e| self.mesh.edge_vertices(e));
-                Box::new(ends.filter_map(|ends| self.names.edge_numbers(ends)))
-            }
-            ElementKind::Face => {
-                let names = self.mesh.faces();
-                Box::new(names.filter_map(|f| Some([self.names.face_number(f)?, 0])))
-            }
-        };
-        for name in names {
-            if let Some(calls) = items.remove(&name) {
-                self.add(replay, edges, calls)?;
+        for name in (self.in_order)(kind).into_iter().flatten() {
+            if let Some(range) = items.remove(&name) {
+                self.add(calls, range)?;
             }
         }
         match items
             .into_iter()
-            .map(|(name, calls)| (calls.start, name))
+            .map(|(name, range)| (range.start, name))
             .min()
         {
             // A structure that merges vertices lists fewer of them.
@@ -395,15 +408,16 @@ fn translate_edits<M: Representation + MeshEdit>(
     }
     let mut mesh = mesh.clone();
     let mut names = ElementNames::new::<M>(polygons);
-    let mut replay = Replay::new();
+    let mut calls = Calls::new();
+    let mut edits = Vec::new();
     for (nth, &call) in trace.calls.iter().enumerate() {
         match call.op {
-            Op::List(_) => replay.push(call.op, call.taken, 0),
+            Op::List(_) => calls.push(call.op, call.taken, 0),
             Op::Item | Op::End | Op::SetPositions => {}
             Op::Query(_) | Op::Position => {
                 let [a, b] = call.name.map(|number| names.vertex(number));
                 let edge = |_| mesh.edge_between(a?, b?);
-                replay.push_query(nth, call, &names, edge)?;
+                calls.push_query(nth, call, &names, &edge)?;
             }
             Op::Edit => {
                 let TracedEdit {
@@ -429,60 +443,60 @@ fn translate_edits<M: Representation + MeshEdit>(
                 if !refused {
                     names.follow(&mesh, &record, &cut);
                 }
-                replay.edits.push(edit);
-                replay.push(Op::Edit, ALL, replay.edits.len() - 1);
+                edits.push(edit);
+                calls.push(Op::Edit, ALL, edits.len() - 1);
             }
         }
     }
-    Ok(replay)
+    Ok(Replay::new(calls, edits, None))
 }
 
-/// Defines a way to run traces on the structure `M` as a type that implements [`Form`].
-macro_rules! replay_form {
-    ($(#[$doc:meta])* $name:ident on $($bound:path),+; changes mesh: $changes:expr;
-     set up: $set_up:ident; edit: $edit:expr; set positions: $positions:expr) => {
-        $(#[$doc])*
-        pub(crate) struct $name<M>(PhantomData<M>);
+/// Runs a trace without edits on the structure `M`.
+pub(crate) struct PlainReplay<M>(PhantomData<M>);
 
-        impl<M: $($bound +)+> Form for $name<M> {
-            type Program = Trace;
-            type Mesh = M;
-            type Scratch = Replay<M>;
+impl<M: Representation> Form for PlainReplay<M> {
+    type Program = Trace;
+    type Mesh = M;
+    type Scratch = Replay<M>;
 
-            const CHANGES_MESH: bool = $changes;
+    fn changes_mesh(trace: &Trace) -> bool {
+        trace.kind() == TraceKind::Moves
+    }
 
-            fn set_up(
-                trace: &Trace,
-                mesh: &M,
-                polygons: &PolygonMesh,
-            ) -> Result<Replay<M>, String> {
-                $set_up(trace, mesh, polygons)
-            }
+    fn set_up(trace: &Trace, mesh: &M, polygons: &PolygonMesh) -> Result<Replay<M>, String> {
+        translate(trace, mesh, polygons)
+    }
 
-            fn run(_: &Trace, mesh: &mut M, replay: &mut Replay<M>) -> Outcome {
-                replay.run(mesh, $edit, $positions)
-            }
-        }
-    };
-}
-
-replay_form! {
-    /// Runs a trace that only queries.
-    QueryReplay on Representation; changes mesh: false;
-    set up: translate; edit: |_, _| (); set positions: |_, _| ()
-}
-replay_form! {
-    /// Runs a trace that writes the positions of all vertices.
-    MoveReplay on Representation; changes mesh: true;
-    set up: translate; edit: |_, _| (); set positions: |mesh, positions| {
-        _ = black_box(mesh.set_positions(positions).is_ok());
+    fn run(_: &Trace, mesh: &mut M, replay: &mut Replay<M>) -> Outcome {
+        replay.run(
+            mesh,
+            |_, _| (),
+            |mesh, positions| _ = black_box(mesh.set_positions(positions).is_ok()),
+        )
     }
 }
-replay_form! {
-    /// Runs a trace with edits.
-    EditReplay on Representation, MeshEdit; changes mesh: true;
-    set up: translate_edits; edit: |mesh, call| {
-        _ = black_box(call.apply(mesh, &mut ()).is_ok());
-    };
-    set positions: |_, _| ()
+
+/// Runs a trace with edits on the structure `M`.
+pub(crate) struct EditReplay<M>(PhantomData<M>);
+
+impl<M: Representation + MeshEdit> Form for EditReplay<M> {
+    type Program = Trace;
+    type Mesh = M;
+    type Scratch = Replay<M>;
+
+    fn changes_mesh(_: &Trace) -> bool {
+        true
+    }
+
+    fn set_up(trace: &Trace, mesh: &M, polygons: &PolygonMesh) -> Result<Replay<M>, String> {
+        translate_edits(trace, mesh, polygons)
+    }
+
+    fn run(_: &Trace, mesh: &mut M, replay: &mut Replay<M>) -> Outcome {
+        replay.run(
+            mesh,
+            |mesh, call| _ = black_box(call.apply(mesh, &mut ()).is_ok()),
+            |_, _| (),
+        )
+    }
 }
