@@ -316,7 +316,8 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
         }
     }
 
-    #[inline]
+    // Always inlined: not inlined, `edge_edges` takes 1.24 times the time.
+    #[inline(always)]
     fn fold<B, F: FnMut(B, EdgeCorner) -> B>(mut self, init: B, mut f: F) -> B {
         let opposite = &self.mesh.opposite;
         let mut folded = init;

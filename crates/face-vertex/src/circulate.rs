@@ -53,8 +53,14 @@ pub(crate) fn has_side_between(face: &[VertexId], v: VertexId, other: VertexId) 
     match face {
         // In a triangle, any two corners are adjacent.
         &[a, b, c] => (a == other) | (b == other) | (c == other),
-        face => neighbours_in(face, v).contains(&other),
+        face => polygon_has_side_between(face, v, other),
     }
+}
+
+/// A function of its own, so that the test of a triangle is small enough to be inlined.
+#[inline(never)]
+fn polygon_has_side_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
+    neighbours_in(face, v).contains(&other)
 }
 
 /// Moves the distinct items to the front. Returns the number of distinct items.
@@ -139,7 +145,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     ///
     /// Compares the vertices of a small fan in place. Uses a hash set for a large fan, so that the
     /// time stays linear.
-    #[inline]
+    #[inline(always)] // A call would return the iterator in memory: VV takes 1.2 times the time.
     pub(crate) fn ring<T, F: FnMut(VertexId) -> T>(
         &self,
         v: VertexId,

@@ -42,12 +42,12 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
         *at
     }
 
-    #[inline]
+    #[inline(always)] // As `ring`.
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
         self.ring(v, |other| other)
     }
 
-    #[inline]
+    #[inline(always)] // As `ring`.
     fn vertex_edges(&self, v: VertexId) -> impl Iterator<Item = Pair<VertexId>> {
         self.spokes(v)
     }
