@@ -17,7 +17,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TURNS, ROUNDS = 3, "15"
-# What is above the limit for a reason that is not known: 1.22 on an Intel Xeon (family 6, model 207); both loops have no calls and list the edges alike.
+# What is above the limit for a reason that is not known: 1.22 on an Intel Xeon (family 6, model 167); both loops have no calls and list the edges alike.
 NAMED = {("face-vertex", "edge_faces")}
 
 
