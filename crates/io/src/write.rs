@@ -332,8 +332,3 @@ impl fmt::Display for Placed {
         }
     }
 }
-
-/// Returns the number of triangles of `polygons` after each polygon was cut.
-fn triangle_count(polygons: &PolygonMesh) -> usize {
-    polygons.corner_count() - 2 * polygons.face_count()
-}

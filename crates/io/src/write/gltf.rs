@@ -7,7 +7,7 @@ use base64::write::EncoderWriter;
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh, RowId};
 
-use super::{WriteError, WriteOptions, triangle_count};
+use super::{WriteError, WriteOptions};
 use crate::format::Format;
 
 /// Codes of glTF.
@@ -218,4 +218,9 @@ fn extremes(points: &[Point]) -> [[f32; 3]; 2] {
         .iter()
         .fold((first, first), |(min, max), &p| (min.min(p), max.max(p)));
     [min.to_array(), max.to_array()]
+}
+
+/// Returns the number of triangles of `polygons` after each polygon was cut.
+fn triangle_count(polygons: &PolygonMesh) -> usize {
+    polygons.corner_count() - 2 * polygons.face_count()
 }
