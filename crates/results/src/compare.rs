@@ -21,7 +21,7 @@ use crate::ranking::CLEAR_DIFFERENCE;
 use crate::rows::Standing;
 use crate::run::Run;
 use crate::statistics::{Median, quotient};
-use matching::{AllMeasured, CommonMeshes, Measured, measurements};
+use matching::{AllMeasured, CommonMeshes, MeasuredFigure, measurements};
 
 /// Default limit for the drift between two measurements on an unchanged machine, as a ratio of
 /// times. The limit of 20 % is about twice the typical drift of a virtual machine
@@ -302,7 +302,7 @@ fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
 
 /// Compares two figures, without the verdict. Returns `None` if there are no times, or if the ratio
 /// is not finite.
-fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Change> {
+fn change(before: &MeasuredFigure<'_>, after: &MeasuredFigure<'_>, drift: f64) -> Option<Change> {
     let [a, b] = [before, after].map(|measured| &measured.figure);
     let (before_ns, after_ns) = (a.row.median_ns?, b.row.median_ns?);
     let quotient = quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
@@ -395,7 +395,7 @@ fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
 
 /// Returns the counts of bytes that differ.
 fn bytes<'r>(
-    pairs: impl Iterator<Item = (&'r Measured<'r>, &'r Measured<'r>)>,
+    pairs: impl Iterator<Item = (&'r MeasuredFigure<'r>, &'r MeasuredFigure<'r>)>,
 ) -> Vec<BytesChange> {
     let mut changes: Vec<BytesChange> = Vec::new();
     for (a, b) in pairs {

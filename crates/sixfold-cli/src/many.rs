@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         print_before_measuring(study_mesh, settings, &mut session.text);
     }
     let stop = Arc::clone(&session.stop);
-    let run = Run {
+    let run = FolderRun {
         arguments,
         settings,
         single,
@@ -139,7 +139,7 @@ fn unfinished<'m>(meshes: &'m [Mesh], shard: Option<Shard>, results: &Results) -
 }
 
 /// The shared input of all studies.
-struct Run<'a> {
+struct FolderRun<'a> {
     arguments: &'a Study,
     settings: &'a Settings,
     /// Whether only one mesh is studied. No progress line is printed in this case.
@@ -153,7 +153,7 @@ struct Run<'a> {
     stop: &'a AtomicBool,
 }
 
-impl Run<'_> {
+impl FolderRun<'_> {
     /// Studies `meshes` one after the other and adds the studies to `results`. Stops if
     /// interrupted, and keeps the finished part of the interrupted study. A study that cannot be
     /// saved is still added; the first error of saving is returned at the end.

@@ -8,7 +8,7 @@ use sixfold::repair::Diagnosis;
 use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use sixfold_results::{BackendReport, MeshReport, SCHEMA, write_json};
 use sixfold_workload::Backend;
 
@@ -180,7 +180,7 @@ fn inspect_unless(
     suffices: impl Fn(&Capabilities) -> bool,
 ) -> Inspection {
     let polygons = &study_mesh.polygons;
-    let candidate = Candidate::from_study_mesh(study_mesh);
+    let input = BuildInput::from_study_mesh(study_mesh);
     let only_triangles = polygons.first_polygon().is_none();
     let mut checked: Vec<(Capabilities, Result<(), BuildError>)> = Vec::new();
     let backends = backends.iter().map(|backend| {
@@ -200,7 +200,7 @@ fn inspect_unless(
             checked.push((needed, verdict.clone()));
             verdict
         };
-        unbuilt(backend, &candidate, verdict)
+        unbuilt(backend, &input, verdict)
     });
     Inspection {
         schema: SCHEMA,
@@ -212,12 +212,12 @@ fn inspect_unless(
 /// Returns the report of a backend that is not built.
 pub(crate) fn unbuilt(
     backend: &Backend,
-    candidate: &Candidate<'_>,
+    input: &BuildInput<'_>,
     verdict: Result<(), BuildError>,
 ) -> BackendReport {
-    let counts = &candidate.counts;
+    let counts = &input.counts;
     let refusal = verdict.err();
-    let reason = refusal.map(|refusal| candidate.reason(&refusal, &backend.info.capabilities));
+    let reason = refusal.map(|refusal| input.reason(&refusal, &backend.info.capabilities));
     let holds = reason.is_none();
     let layout_bytes = holds.then(|| (backend.layout_bytes)(counts));
     BackendReport {

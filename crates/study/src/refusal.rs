@@ -10,14 +10,14 @@ use sixfold_results::numbers::counted;
 
 /// A mesh from which backends are built. The facts that explain refusals are computed once, for the
 /// first refusal.
-pub(crate) struct Candidate<'a> {
+pub(crate) struct BuildInput<'a> {
     pub(crate) polygons: &'a PolygonMesh,
     pub(crate) counts: Counts,
     facts: OnceCell<Facts>,
 }
 
-impl<'a> Candidate<'a> {
-    /// Creates a candidate from a mesh whose facts are not known, except its number of edges.
+impl<'a> BuildInput<'a> {
+    /// Creates the input from a mesh whose facts are not known, except its number of edges.
     pub(crate) fn new(polygons: &'a PolygonMesh, edges: usize) -> Self {
         Self {
             polygons,
@@ -26,7 +26,7 @@ impl<'a> Candidate<'a> {
         }
     }
 
-    /// Creates a candidate with known `facts` of `polygons`.
+    /// Creates the input with known `facts` of `polygons`.
     pub(crate) fn with_facts(polygons: &'a PolygonMesh, facts: &Facts) -> Self {
         Self {
             facts: OnceCell::from(facts.clone()),
@@ -34,7 +34,7 @@ impl<'a> Candidate<'a> {
         }
     }
 
-    /// Creates a candidate from the polygons of `study_mesh`. If the file has degenerate faces, the
+    /// Creates the input from the polygons of `study_mesh`. If the file has degenerate faces, the
     /// facts of the file are not those of the polygons.
     pub(crate) fn from_study_mesh(study_mesh: &'a StudyMesh) -> Self {
         let StudyMesh {
@@ -155,8 +155,8 @@ mod tests {
         };
         let refusal = capabilities.check(&polygons).expect_err("faults");
         let facts = Facts::from_polygons(&polygons);
-        let candidate = Candidate::with_facts(&polygons, &facts);
-        candidate.reason(&refusal, &capabilities)
+        let input = BuildInput::with_facts(&polygons, &facts);
+        input.reason(&refusal, &capabilities)
     }
 
     #[test]

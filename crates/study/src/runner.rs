@@ -8,7 +8,7 @@ use crate::engine::disturbance::{DisturbanceDetector, Verdict, reference_work};
 use crate::engine::measure::{MAX_RUNS, untimed_runs};
 use crate::engine::plan::SHORTEST_SAMPLE_NS;
 use crate::labs::study::{StudyError, prepare};
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use sixfold_results::{Policy, Time};
 use sixfold_workload::Backend;
 use sixfold_workload::Clock;
@@ -69,8 +69,8 @@ impl<'a> BackendRunner<'a> {
         let heap = HeapGuard::acquire(Policy::Kept)?;
         let draw: Option<&Draw> = None;
         let facts = Facts::from_polygons(polygons);
-        let candidate = Candidate::with_facts(polygons, &facts);
-        let (report, subject) = prepare(backend, &candidate, draw);
+        let input = BuildInput::with_facts(polygons, &facts);
+        let (report, subject) = prepare(backend, &input, draw);
         let subject = subject.ok_or_else(|| StudyError::none_holds([report]))?;
         Ok(Self {
             subject,

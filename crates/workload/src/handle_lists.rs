@@ -56,7 +56,7 @@ impl<M: MeshQuery> HandleLists<M> {
         }
     }
 
-    /// Passes the sink through the queries of `relation` at the elements `range` of their list.
+    /// **Timed**: passes the sink through the queries of `relation` at the elements `range` of their list.
     ///
     /// Each loop is a function of its own, as in `operation::relation::query`.
     #[inline]
@@ -80,7 +80,7 @@ impl<M: MeshQuery> HandleLists<M> {
         sixfold_core::match_relation!(relation, query_list!)
     }
 
-    /// As [`query`](Self::query), but takes only the first `taken` results of each query.
+    /// **Timed**: as [`query`](Self::query), but takes only the first `taken` results of each query.
     #[inline]
     pub(crate) fn query_first(
         &self,

@@ -93,7 +93,7 @@ pub struct ElementSample {
 
 /// The time and the result of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct TimedRun {
     /// The time of one run of the whole task. If the task ran on a sample of the elements, the time
     /// is an estimate for all elements.
     pub time: Time,
@@ -104,7 +104,7 @@ pub struct Run {
     pub refusal: Option<String>,
 }
 
-impl Run {
+impl TimedRun {
     /// Makes the record of a run that the backend completed.
     pub fn done(time: Time, outcome: Option<Outcome>) -> Self {
         Self {
@@ -177,5 +177,5 @@ pub trait TimedBackend {
     /// Runs `job` and returns the time of one run. `series` gives the number of runs and the state
     /// of the caches at the start. If the job runs on a sample of the elements, `series` may
     /// contain only one run.
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun;
 }

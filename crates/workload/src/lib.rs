@@ -3,6 +3,8 @@
 //! [`Backend::new`] makes a [`Backend`] for any structure. [`Backend::prepare`] builds the
 //! structure and returns a [`TimedBackend`]. A `TimedBackend` runs a [`Job`] and returns the time
 //! and the result. This crate contains all code that is compiled separately for each structure.
+//!
+//! The documentation of a function that runs while the clock runs begins with **Timed**.
 
 mod allocation;
 mod backend;
@@ -42,7 +44,7 @@ pub use clock::{Clock, MachineClock, timed};
 pub use compilation::{COMPILATION, Compilation};
 pub use draw::{Draw, Side};
 pub use heap::{Heap, MeasuredMemory};
-pub use job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
+pub use job::{ElementSample, Job, Outcome, Task, TimedBackend, TimedRun};
 pub use memory_speed::MemorySpeed;
 pub use mix::{
     EditPlaceError, MixBackend, MixRefusal, PreparedMix, Route, Schedule, prepare_mix, tabulate,

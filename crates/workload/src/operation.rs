@@ -226,7 +226,7 @@ macro_rules! operations {
                 }
             }
 
-            /// Runs the part of the operation that visits elements of `kind`.
+            /// **Timed**: runs the part of the operation that visits elements of `kind`.
             #[inline]
             pub(crate) fn sweep<M: MeshQuery, E: Elements<M>>(
                 self,

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use sixfold::MeshQuery;
 
-use crate::job::{Outcome, Run};
+use crate::job::{Outcome, TimedRun};
 use crate::operation::{ElementKind, Operation};
 use crate::series::Series;
 use crate::sweeps::{All, Outputs, SweepResult};
@@ -15,7 +15,7 @@ pub(crate) fn run_whole<M: MeshQuery>(
     outputs: &mut Outputs<M>,
     operation: Operation,
     series: &Series<'_>,
-) -> Run {
+) -> TimedRun {
     let mut results = [SweepResult::default(); 3];
     let time = series.time_together(|| {
         for kind in operation.kinds() {
@@ -27,7 +27,7 @@ pub(crate) fn run_whole<M: MeshQuery>(
     let check = series.check;
     let values = |kind| outputs.sum(mesh, &All, kind);
     let outcome = check.then(|| outcome(operation, results, [1.0; 3], &values));
-    Run::done(time, outcome)
+    TimedRun::done(time, outcome)
 }
 
 /// Returns the result of a pass. `results` are those of the kinds of elements, and `scale` is the number

@@ -211,18 +211,19 @@ trait Change {
     fn count(&self) -> usize;
     fn add(&mut self);
     fn reset(&mut self, nth: usize);
+    /// **Timed**: runs on the copy `nth`.
     fn run(&mut self, nth: usize);
 }
 
-struct Changing<'c, T, New, Reset, Run> {
+struct Changing<'c, T, New, Reset, TimedRun> {
     copies: &'c mut Vec<T>,
     new: New,
     reset: Reset,
-    run: Run,
+    run: TimedRun,
 }
 
-impl<T, New: Fn() -> T, Reset: FnMut(&mut T), Run: FnMut(&mut T)> Change
-    for Changing<'_, T, New, Reset, Run>
+impl<T, New: Fn() -> T, Reset: FnMut(&mut T), TimedRun: FnMut(&mut T)> Change
+    for Changing<'_, T, New, Reset, TimedRun>
 {
     fn count(&self) -> usize {
         self.copies.len()

@@ -7,7 +7,7 @@ use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 use crate::backend::Backend;
 use crate::draw::{Draw, Side};
 use crate::handle_lists::HandleLists;
-use crate::job::{ElementSample, Job, Run, Task, TimedBackend};
+use crate::job::{ElementSample, Job, Task, TimedBackend, TimedRun};
 use crate::operation::{ElementKind, Operation, build, edit_pass, subdivision, vv_smooth};
 use crate::passes::{outcome, run_whole};
 use crate::series::{Series, Start, exceeds_second_level};
@@ -44,7 +44,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         }
     }
 
-    fn run_whole(&mut self, operation: Operation, series: &Series<'_>) -> Run {
+    fn run_whole(&mut self, operation: Operation, series: &Series<'_>) -> TimedRun {
         fill_caches(&self.mesh, series);
         fill_caches_with_outputs(&self.mesh, &self.outputs, series);
         run_whole(&self.mesh, &mut self.outputs, operation, series)
@@ -55,7 +55,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         operation: Operation,
         sample: ElementSample,
         series: &Series<'_>,
-    ) -> Run {
+    ) -> TimedRun {
         let series = &Series {
             untimed: 0,
             runs: 1,
@@ -97,7 +97,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         };
         let check = series.check;
         let outcome = check.then(|| outcome(operation, results, scale, &values));
-        Run::done(total, outcome)
+        TimedRun::done(total, outcome)
     }
 }
 
@@ -125,9 +125,9 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
         }
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let Task::Operation(operation) = job.task else {
-            return Run::refused("the backend has no prepared workload".into(), series);
+            return TimedRun::refused("the backend has no prepared workload".into(), series);
         };
         let run = match (operation, job.sample, operation.subdivision_job()) {
             (Operation::EditPass(pass), sample, _) => {
@@ -143,7 +143,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
             (Operation::VvSmooth, ..) => vv_smooth::run(&self.mesh, &mut self.outputs, series),
             (operation, ..) => self.run_whole(operation, series),
         };
-        Run {
+        TimedRun {
             time: run.time.scaled(1.0 / f64::from(series.runs)),
             ..run
         }

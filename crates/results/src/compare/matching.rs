@@ -70,7 +70,7 @@ impl<'r> CommonMeshes<'r> {
 }
 
 /// A figure of a document, and its finding.
-pub(super) struct Measured<'r> {
+pub(super) struct MeasuredFigure<'r> {
     pub(super) key: Measurement,
     pub(super) figure: Figure<'r>,
     pub(super) finding: &'r Finding,
@@ -78,12 +78,12 @@ pub(super) struct Measured<'r> {
 
 /// The measured figures of a document.
 pub(super) struct AllMeasured<'r> {
-    pub(super) in_order: Vec<Measured<'r>>,
+    pub(super) in_order: Vec<MeasuredFigure<'r>>,
     places: BTreeMap<Measurement, usize>,
 }
 
 impl<'r> AllMeasured<'r> {
-    pub(super) fn get(&self, key: &Measurement) -> Option<&Measured<'r>> {
+    pub(super) fn get(&self, key: &Measurement) -> Option<&MeasuredFigure<'r>> {
         self.places.get(key).map(|&place| &self.in_order[place])
     }
 
@@ -117,7 +117,7 @@ pub(super) fn measurements<'r>(
             };
             if !places.contains_key(&key) {
                 places.insert(key.clone(), in_order.len());
-                in_order.push(Measured {
+                in_order.push(MeasuredFigure {
                     key,
                     figure,
                     finding,

@@ -145,7 +145,7 @@ mod tests {
 
     use super::*;
     use sixfold_workload::MachineClock;
-    use sixfold_workload::{ElementSample, Run};
+    use sixfold_workload::{ElementSample, TimedRun};
 
     fn pillow() -> PolygonMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
@@ -181,7 +181,7 @@ mod tests {
         fn bytes(&self) -> usize {
             1
         }
-        fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
             // A sample has half the checksum of a full run.
             assert!(!self.samples_only || job.sample.is_some(), "run in full");
             let part = if job.sample.is_some() { 0.5 } else { 1.0 };
@@ -190,7 +190,7 @@ mod tests {
                 elements: 10 - self.merged as u64,
                 refused: self.refused,
             };
-            Run::done(series.clock.now(), Some(outcome))
+            TimedRun::done(series.clock.now(), Some(outcome))
         }
     }
 

@@ -88,7 +88,7 @@ impl<'m> Bench<'m> {
         &mut self,
         trial: Trial<'s>,
         progress: &mut dyn FnMut(Progress<'_>),
-    ) -> Measured<'s> {
+    ) -> TrialResult<'s> {
         let Trial {
             polygons,
             counts,
@@ -122,7 +122,7 @@ impl<'m> Bench<'m> {
         let (second, entries): (Vec<Entry>, Vec<Entry>) =
             entries.into_iter().partition(|e| Some(e.subject) == second);
         let subjects = &mut columns.subjects;
-        Measured {
+        TrialResult {
             agreements: compare_checksums(&entries, subjects, polygons, clock, stop),
             times: corrected(&entries),
             polygons,
@@ -196,7 +196,7 @@ impl<'s> Columns<'s> {
 }
 
 /// The result of a trial.
-pub(crate) struct Measured<'s> {
+pub(crate) struct TrialResult<'s> {
     polygons: &'s PolygonMesh,
     pub(crate) columns: Columns<'s>,
     /// The tasks of all columns except the second copy of the control.
@@ -213,7 +213,7 @@ pub(crate) struct Measured<'s> {
     pub(crate) interrupted: bool,
 }
 
-impl Measured<'_> {
+impl TrialResult<'_> {
     /// Returns a row for each entry with a time or an estimate. Entries of the same task are compared
     /// with each other.
     pub(crate) fn rows(&self) -> Vec<ResultRow> {

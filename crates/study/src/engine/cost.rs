@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use sixfold::{Facts, QueryCost, shapes};
 use sixfold_results::RunSettings;
-use sixfold_workload::{Backend, Clock, Job, MachineClock, Operation, Run, Series, TimedBackend};
+use sixfold_workload::{
+    Backend, Clock, Job, MachineClock, Operation, Series, TimedBackend, TimedRun,
+};
 
 use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::Effort;
@@ -55,7 +57,7 @@ impl TimedBackend for Counting<'_> {
     fn rebuild(&mut self) {
         self.count(|backend| backend.rebuild());
     }
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let start = Instant::now();
         let run = self.count(|backend| backend.run(job, series));
         // The time of a run on some of the elements is scaled to the whole mesh, and a subdivision

@@ -29,7 +29,8 @@ use sixfold_results::statistics::{Median, undisturbed};
 use sixfold_results::{RefusalKind, Samples, Time};
 use sixfold_workload::Operation;
 use sixfold_workload::{
-    Clock, Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
+    Clock, Job, MIN_TIMED_NS, Outcome, Series, Start, Task, TimedBackend, TimedRun,
+    exceeds_second_level,
 };
 
 /// Maximum number of rounds.
@@ -327,7 +328,7 @@ impl<'m> Measurement<'m, '_> {
         job: &Job,
         [untimed, runs]: [u32; 2],
         check: bool,
-    ) -> Run {
+    ) -> TimedRun {
         let series = Series {
             untimed,
             runs,

@@ -3,7 +3,7 @@
 use crate::engine::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
 use sixfold_results::{RefusalKind, Time};
 use sixfold_workload::{ElementKind, Operation};
-use sixfold_workload::{ElementSample, Job, Run, Task, exceeds_second_level};
+use sixfold_workload::{ElementSample, Job, Task, TimedRun, exceeds_second_level};
 
 /// Planned number of rounds.
 const ROUNDS: u32 = 20;
@@ -177,7 +177,7 @@ impl Measurement<'_, '_> {
     }
 
     /// Returns the run, and the wall time that passed outside the timed part, in nanoseconds.
-    fn run_with_overhead(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
+    fn run_with_overhead(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (TimedRun, f64) {
         let start = self.clock().now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
         let [untimed, runs] = runs;
@@ -315,7 +315,7 @@ impl Measurement<'_, '_> {
     }
 
     /// Runs the operation on a patch of `size` faces.
-    fn run_patch(&mut self, entry: &Entry, size: usize) -> Run {
+    fn run_patch(&mut self, entry: &Entry, size: usize) -> TimedRun {
         let untimed = u32::from(entry.job.task.grows_tables());
         self.run(entry.subject, &patch_job(entry, size), [untimed, 1], false)
     }
@@ -402,7 +402,7 @@ fn patch_job(entry: &Entry, size: usize) -> Job {
 }
 
 /// Records the run as the warm-up. A refused run has no time.
-pub(crate) fn record_warm_up(entry: &mut Entry, run: Run) {
+pub(crate) fn record_warm_up(entry: &mut Entry, run: TimedRun) {
     entry.warm_up = run.refusal.is_none().then_some(run.time);
     entry.outcome = run.outcome;
     entry.refusal = run.refusal;

@@ -8,7 +8,7 @@ use sixfold::QueryCost;
 use sixfold_core::Counts;
 use sixfold_results::{CacheState, Policy, Time};
 use sixfold_workload::{
-    Backend, Clock, Job, MemorySpeed, Operation, Run, Series, Start, Task, TimedBackend,
+    Backend, Clock, Job, MemorySpeed, Operation, Series, Start, Task, TimedBackend, TimedRun,
 };
 
 use crate::engine::disturbance::ReferenceWork;
@@ -306,7 +306,7 @@ impl TimedBackend for SimulatedBackend<'_> {
             .work(self.cost_ns(Task::Operation(Operation::Build)));
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let mut outcome = None;
         if series.check || !self.tried.contains(&job.task) {
             let once = Series {
@@ -328,6 +328,6 @@ impl TimedBackend for SimulatedBackend<'_> {
         let start = self.machine.now();
         self.machine.work(each_ns * f64::from(series.runs));
         let time = self.machine.now() - start;
-        Run::done(time.scaled(1.0 / (part * f64::from(series.runs))), outcome)
+        TimedRun::done(time.scaled(1.0 / (part * f64::from(series.runs))), outcome)
     }
 }

@@ -16,7 +16,7 @@ use sixfold::{Facts, PolygonMesh, QueryCost};
 use sixfold_results::{AskedCount, Policy, Time, sanitize};
 use sixfold_workload::pages::HeapGuard;
 use sixfold_workload::{
-    Contestant, Job, MachineClock, Operation, Outcome, Run, Series, Suite, Task, TimedBackend,
+    Contestant, Job, MachineClock, Operation, Outcome, Series, Suite, Task, TimedBackend, TimedRun,
 };
 
 use super::MeshFile;
@@ -116,11 +116,11 @@ impl TimedBackend for Isolated<'_> {
         let _ = self.child.request("rebuild", 1);
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         match job.task {
             Task::Operation(Operation::Build) => self.child.run_named("build", series),
             Task::Program => self.child.run_named("run", series),
-            _ => Run::refused("a program runs only as a whole".into(), series),
+            _ => TimedRun::refused("a program runs only as a whole".into(), series),
         }
     }
 }
@@ -165,7 +165,7 @@ pub fn serve_program(
     let facts = Facts::from_polygons(polygons);
     let clock = MachineClock::start();
     let qualification = Qualification {
-        refusals: refusal::Candidate::with_facts(polygons, &facts),
+        refusals: refusal::BuildInput::with_facts(polygons, &facts),
         longest_run_ns: task.longest_run_ns.map_or(f64::INFINITY, |ns| ns as f64),
         machine: &clock,
     };
@@ -207,7 +207,7 @@ pub fn serve_program(
 }
 
 /// Returns the answer to a request. The times are those of all runs.
-fn described(run: &Run, times: u32) -> serde_json::Value {
+fn described(run: &TimedRun, times: u32) -> serde_json::Value {
     let Time {
         cpu_ns, wall_ns, ..
     } = run.time.scaled(f64::from(times));

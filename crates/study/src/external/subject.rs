@@ -2,7 +2,7 @@
 
 use sixfold::QueryCost;
 use sixfold_results::{Time, sanitize};
-use sixfold_workload::{Clock, Job, Outcome, Run, Series, TimedBackend};
+use sixfold_workload::{Clock, Job, Outcome, Series, TimedBackend, TimedRun};
 
 use super::program::{Program, Request, Response};
 
@@ -61,9 +61,9 @@ impl<'a> ExternalSubject<'a> {
     }
 
     /// Runs what the program calls `name`, as `series` describes.
-    pub(super) fn run_named(&mut self, name: &'static str, series: &Series<'_>) -> Run {
+    pub(super) fn run_named(&mut self, name: &'static str, series: &Series<'_>) -> TimedRun {
         let clock = series.clock;
-        let refused = |refusal: String| Run::refused(refusal, series);
+        let refused = |refusal: String| TimedRun::refused(refusal, series);
         let request = |times: u32| Request { run: name, times };
         if series.untimed > 0
             && let Err(why) = self.ask(&request(series.untimed), clock)
@@ -79,7 +79,7 @@ impl<'a> ExternalSubject<'a> {
                     elements,
                     refused: 0,
                 });
-                Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
+                TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
             }
             Ok((response, None)) => refused(sanitize(&response.refused.unwrap_or_default())),
             Err(why) => refused(why),
@@ -109,14 +109,14 @@ impl TimedBackend for ExternalSubject<'_> {
         self.bytes
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         if job.sample.is_some() {
             let reason = "an external program cannot time a sample of the elements";
-            return Run::refused(reason.into(), series);
+            return TimedRun::refused(reason.into(), series);
         }
         match job.task.operation() {
             Some(operation) => self.run_named(operation.name(), series),
-            None => Run::refused("it cannot run workloads".into(), series),
+            None => TimedRun::refused("it cannot run workloads".into(), series),
         }
     }
 }

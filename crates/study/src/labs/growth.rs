@@ -31,7 +31,7 @@ use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, scans};
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
 use settings::Plan;
@@ -205,14 +205,14 @@ impl Sweep<'_> {
         let seed = self.settings.study.seed;
         let needs_draw = backends.iter().any(|b| skewed || scans(b, operations));
         let draw = needs_draw.then(|| Draw::new(mesh, seed));
-        let candidate = Candidate::with_facts(mesh, facts);
+        let input = BuildInput::with_facts(mesh, facts);
         let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
         let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
         for backend in backends {
             if self.bench.stopped() {
                 return Ok(None);
             }
-            let (report, subject) = prepare(backend, &candidate, draw.as_ref());
+            let (report, subject) = prepare(backend, &input, draw.as_ref());
             match subject {
                 Some(subject) => {
                     backend_bytes

@@ -16,7 +16,7 @@ use sixfold_workload::{
 use crate::engine::run::start_run;
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use sixfold_results::{Audit, BackendAudit, BackendReport, OperationBytes, RunSettings};
 
 /// Bytes of a word: an index or a coordinate.
@@ -37,12 +37,12 @@ pub fn audit(
     heap: &dyn Heap,
     counting: &mut dyn FnMut(&Backend),
 ) -> Audit {
-    let candidate = Candidate::from_study_mesh(study_mesh);
+    let input = BuildInput::from_study_mesh(study_mesh);
     let names = backends.iter().map(|b| b.name().to_owned()).collect();
     let backends = backends.iter().map(|backend| {
         counting(backend);
-        let measured = count_bytes(backend, candidate.polygons, heap);
-        backend_audit(backend, &candidate, measured)
+        let measured = count_bytes(backend, input.polygons, heap);
+        backend_audit(backend, &input, measured)
     });
     let mut audit = Audit {
         run: start_run(RunSettings {
@@ -150,13 +150,13 @@ pub fn none_holds(audit: &Audit) -> Option<StudyError> {
 
 fn backend_audit(
     backend: &Backend,
-    candidate: &Candidate<'_>,
+    input: &BuildInput<'_>,
     measured: Result<MeasuredMemory, BuildError>,
 ) -> BackendAudit {
-    let counts = &candidate.counts;
+    let counts = &input.counts;
     let closed_triangles = closed_triangles_words(backend);
     let (report, measured) = match measured {
-        Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
+        Err(refusal) => (unbuilt(backend, input, Err(refusal)), None),
         Ok(measured) => {
             let bytes = measured.memory.total();
             let report = BackendReport {
@@ -164,7 +164,7 @@ fn backend_audit(
                 bytes_per_vertex: per_vertex(bytes, counts),
                 tables: measured.memory.tables,
                 merged_vertices: Some(measured.merged_vertices),
-                ..unbuilt(backend, candidate, Ok(()))
+                ..unbuilt(backend, input, Ok(()))
             };
             (report, Some((measured.counted, measured.peak)))
         }

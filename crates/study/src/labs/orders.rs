@@ -24,7 +24,7 @@ use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, scans};
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use effects::{OrderSamples, comparison};
 use meshes::OrderedMeshes;
 use sixfold_results::{Comparison, OrdersReport, Refusal, ResultRow, Samples, noise};
@@ -97,13 +97,13 @@ pub(crate) fn orders_on(
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     let mut columns: Vec<Column> = Vec::new();
-    let candidates: Vec<_> = meshes
+    let inputs: Vec<_> = meshes
         .iter()
-        .map(|(order, mesh, draw)| (order, Candidate::new(mesh, study_mesh.facts.edges), draw))
+        .map(|(order, mesh, draw)| (order, BuildInput::new(mesh, study_mesh.facts.edges), draw))
         .collect();
     for backend in &chosen {
-        for &(order, ref candidate, draw) in &candidates {
-            let (report, subject) = prepare(backend, candidate, draw);
+        for &(order, ref input, draw) in &inputs {
+            let (report, subject) = prepare(backend, input, draw);
             if order == Order::Given {
                 backends.push(report);
             }

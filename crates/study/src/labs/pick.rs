@@ -39,7 +39,7 @@ use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{Settings, StudyError, needed_bytes};
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use backend::{PickBackend, build_tables};
 use measurement::{Contestant, PickMeasurement};
 use pooled::Question;
@@ -207,7 +207,7 @@ fn qualified(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let candidate = Candidate::from_study_mesh(study_mesh);
+    let input = BuildInput::from_study_mesh(study_mesh);
     let mut excluded = Vec::new();
     let mut qualified = Vec::new();
     for backend in settings.chosen_backends()? {
@@ -215,11 +215,11 @@ fn qualified(
             .needs
             .iter()
             .find_map(|need| needs::unmet_reason(*need, &backend));
-        let bytes = (backend.layout_bytes)(&candidate.counts) as u64;
+        let bytes = (backend.layout_bytes)(&input.counts) as u64;
         let large = || needs::over_memory_limit(bytes, settings.max_memory);
         let refused = || {
             let refusal = backend.info.check(polygons).err()?;
-            Some(candidate.reason(&refusal, &backend.info.capabilities))
+            Some(input.reason(&refusal, &backend.info.capabilities))
         };
         let excluded_because = lacks.or_else(large).or_else(refused);
         match excluded_because {
@@ -236,7 +236,7 @@ fn measure_mesh(
     bench: &mut Bench<'_>,
     budget: Budget<'_>,
     progress: &mut dyn FnMut(f64, &str),
-) -> Result<measurement::Outcome, PickError> {
+) -> Result<measurement::MeshOutcome, PickError> {
     let machine = bench.machine;
     let (qualifying, mut excluded) = qualified(study_mesh, settings)?;
     let polygons = &study_mesh.polygons;

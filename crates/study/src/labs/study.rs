@@ -21,7 +21,7 @@ use sixfold_results::{
 };
 
 use crate::engine::warnings::warnings;
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::MachineClock;
@@ -241,11 +241,11 @@ pub(crate) fn study_on(
         .any(|backend| skewed || scans(backend, &operations))
         .then(|| Draw::new(polygons, settings.seed));
 
-    let candidate = Candidate::from_study_mesh(study_mesh);
+    let input = BuildInput::from_study_mesh(study_mesh);
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     for backend in &chosen {
-        let (report, subject) = prepare(backend, &candidate, draw.as_ref());
+        let (report, subject) = prepare(backend, &input, draw.as_ref());
         backends.push(report);
         subjects.extend(subject.map(|built| machine.host(built, &counts)));
     }
@@ -348,19 +348,19 @@ pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
 
 pub(crate) fn prepare<'a>(
     backend: &Backend,
-    candidate: &Candidate<'a>,
+    input: &BuildInput<'a>,
     draw: Option<&'a Draw>,
 ) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
-    match backend.prepare(candidate.polygons, draw) {
-        Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
+    match backend.prepare(input.polygons, draw) {
+        Err(refusal) => (unbuilt(backend, input, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();
             let report = BackendReport {
                 bytes: Some(bytes),
-                bytes_per_vertex: per_vertex(bytes, &candidate.counts),
+                bytes_per_vertex: per_vertex(bytes, &input.counts),
                 tables: memory.tables,
                 merged_vertices: Some(subject.merged_vertices()),
-                ..unbuilt(backend, candidate, Ok(()))
+                ..unbuilt(backend, input, Ok(()))
             };
             (report, Some(subject))
         }

@@ -24,7 +24,7 @@ use crate::engine::measure::Progress;
 use crate::engine::run::start_run;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::labs::study::{Settings, StudyError, study_on};
-use crate::refusal::Candidate;
+use crate::refusal::BuildInput;
 use sixfold_results::numbers::bytes;
 
 /// The stage before the times are measured.
@@ -156,7 +156,7 @@ fn count_all(
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<(Vec<BackendReport>, Vec<WhyRow>), StudyError> {
     let chosen = settings.chosen_backends()?;
-    let candidate = Candidate::from_study_mesh(study_mesh);
+    let input = BuildInput::from_study_mesh(study_mesh);
     let (mut backends, mut rows) = (Vec::new(), Vec::new());
     let all = (chosen.len() * relations.len()) as f64;
     for (i, backend) in chosen.iter().enumerate() {
@@ -167,8 +167,8 @@ fn count_all(
             rows: &mut rows,
             progress,
         };
-        let verdict = backend.count_reads(candidate.polygons, relations, stop, &mut counting);
-        backends.push(unbuilt(backend, &candidate, verdict));
+        let verdict = backend.count_reads(input.polygons, relations, stop, &mut counting);
+        backends.push(unbuilt(backend, &input, verdict));
     }
     if backends.iter().all(|backend| !backend.holds) {
         return Err(StudyError::none_holds(backends));

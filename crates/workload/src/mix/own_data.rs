@@ -49,7 +49,7 @@ impl OwnMemory {
         }))
     }
 
-    /// Reads and writes the records of the visits `range` to elements of one kind.
+    /// **Timed**: reads and writes the records of the visits `range` to elements of one kind.
     #[inline]
     pub(crate) fn visit(&self, kind: Option<ElementKind>, range: Range<u64>) {
         if let Some(records) = kind.and_then(|kind| self.0[kind.index()].as_ref()) {

@@ -13,7 +13,7 @@ use crate::timed_structure::edge_handle;
 use crate::workload::Action;
 
 impl<M: MeshQuery> HandleLists<M> {
-    /// Runs `action` for the operations `range`. Returns the number of results or of positions
+    /// **Timed**: runs `action` for the operations `range`. Returns the number of results or of positions
     /// read.
     #[inline(never)]
     pub(crate) fn run_action(&self, mesh: &M, action: Action, range: Range<u64>) -> u64 {

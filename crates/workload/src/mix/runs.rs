@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use crate::job::{Outcome, Run};
+use crate::job::{Outcome, TimedRun};
 use crate::mix::schedule::Schedule;
 use crate::series::Series;
 
 /// The numbers of operations, of results, and of refused edits.
 pub(crate) type Counts = [u64; 3];
 
-/// Runs the operations on elements of some turns. `range_of` returns the operations of a part in a
+/// **Timed**: runs the operations on elements of some turns. `range_of` returns the operations of a part in a
 /// turn, and `run_range` runs them.
 pub(crate) fn run_turns(
     parts: usize,
@@ -38,7 +38,7 @@ pub(crate) fn time_turns(
     first: u64,
     series: &Series<'_>,
     run_range: &mut dyn FnMut(usize, Range<u64>) -> Counts,
-) -> Run {
+) -> TimedRun {
     let parts = schedule.parts.len();
     let range_of = |part, turn| schedule.turn_range(part, turn);
     let timed = first + u64::from(series.untimed);
@@ -54,7 +54,7 @@ pub(crate) fn time_turns(
         elements: schedule.turn_operations as u64,
         refused: 0,
     });
-    Run::done(each, outcome)
+    TimedRun::done(each, outcome)
 }
 
 /// Times operations of one part alone from operation `first`, as `series` describes; one run is one
@@ -64,7 +64,7 @@ pub(crate) fn time_part(
     series: &Series<'_>,
     all: Option<u64>,
     run_range: &mut dyn FnMut(Range<u64>) -> Counts,
-) -> Run {
+) -> TimedRun {
     let timed = first + u64::from(series.untimed);
     if series.untimed > 0 {
         run_range(first..timed);
@@ -77,5 +77,5 @@ pub(crate) fn time_part(
         elements: 1,
         refused: 0,
     });
-    Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
+    TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
 }

@@ -13,7 +13,7 @@ use crate::backend::Backend;
 use crate::draw::Draw;
 use crate::edit_place::prepare_edit;
 use crate::handle_lists::HandleLists;
-use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::places::{EditPlaceError, EditPlaces};
 use crate::mix::route::Route;
@@ -178,7 +178,7 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
         self.calls.get(nth).map(Vec::as_slice)
     }
 
-    /// Runs the operations `range` of one part on `mesh`. If the part is an edit, `range` contains
+    /// **Timed**: runs the operations `range` of one part on `mesh`. If the part is an edit, `range` contains
     /// the indices of the faces at which the edit is done. Returns the numbers of operations,
     /// results and refused edits.
     #[inline(never)]
@@ -209,7 +209,7 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
         }
     }
 
-    /// Runs the operations `range` of one part, and visits the program's own data of the same
+    /// **Timed**: runs the operations `range` of one part, and visits the program's own data of the same
     /// elements. Returns the same counts as [`run_range`](Self::run_range).
     fn run_with_data(&self, mesh: &mut M, part: usize, range: Range<u64>) -> Counts {
         let kind = self.schedule.parts[part].action.kind();
@@ -217,7 +217,7 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
         self.run_range(mesh, part, range)
     }
 
-    /// Runs the element operations of some turns. Returns the same counts as
+    /// **Timed**: runs the element operations of some turns. Returns the same counts as
     /// [`run_range`](Self::run_range). Edits start at their first place.
     fn run_turns_on_copy(&self, mesh: &mut M, turns: Range<u64>) -> Counts {
         let schedule = self.schedule;
@@ -334,7 +334,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
     }
 
     /// Runs turns of the mix; with edits, one run is as many turns as fit on a restored copy.
-    fn run_mix(&mut self, first: u64, series: &Series<'_>) -> Run {
+    fn run_mix(&mut self, first: u64, series: &Series<'_>) -> TimedRun {
         let Self { timed, work, .. } = self;
         if self.prepared.is_none() {
             let mesh = black_box(&mut timed.mesh);
@@ -369,12 +369,12 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
             elements: per_run as u64,
             refused: 0,
         });
-        Run::done(each, outcome)
+        TimedRun::done(each, outcome)
     }
 
     /// Runs one part alone. Edits are done at the first places of restored copies; their result is
     /// the number of accepted edits on a copy.
-    fn run_part(&mut self, part: usize, first: u64, series: &Series<'_>) -> Run {
+    fn run_part(&mut self, part: usize, first: u64, series: &Series<'_>) -> TimedRun {
         let Some(places) = self.work.edits(part) else {
             let work = &self.work;
             let mesh = black_box(&mut self.timed.mesh);
@@ -398,7 +398,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
             elements: 1,
             refused: 0,
         });
-        Run::done(time.scaled(1.0 / operations), outcome)
+        TimedRun::done(time.scaled(1.0 / operations), outcome)
     }
 
     /// Runs `run` on restored copies of the mesh that is prepared for its edits, as `series`
@@ -456,12 +456,12 @@ impl<M: Representation + 'static, W: WriteAccess<M>> TimedBackend for StructureM
         }
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         match job.task {
             Task::Operation(_) => self.timed.run(job, series),
             Task::Mix => self.run_mix(job.first, series),
             Task::Part(part) => self.run_part(part, job.first, series),
-            Task::Program => Run::refused(NO_PROGRAM.into(), series),
+            Task::Program => TimedRun::refused(NO_PROGRAM.into(), series),
         }
     }
 }

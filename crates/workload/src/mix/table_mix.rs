@@ -8,7 +8,7 @@ use sixfold_relation_table::Numbering;
 
 use crate::backend::Backend;
 use crate::handle_lists::HandleLists;
-use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::route::Route;
 use crate::mix::runs::{Counts, time_part, time_turns};
@@ -99,7 +99,7 @@ struct TableMix<'a> {
 }
 
 impl TableMix<'_> {
-    fn build(&self, series: &Series<'_>) -> Run {
+    fn build(&self, series: &Series<'_>) -> TimedRun {
         let bytes = self.tables.bytes();
         let time = (self.build)(self.polygons, &relations(self.schedule), bytes, series);
         let outcome = series.check.then(|| Outcome {
@@ -107,10 +107,10 @@ impl TableMix<'_> {
             elements: self.tables.faces as u64,
             refused: 0,
         });
-        Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
+        TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
     }
 
-    fn run_pass(&mut self, operation: Operation, series: &Series<'_>) -> Run {
+    fn run_pass(&mut self, operation: Operation, series: &Series<'_>) -> TimedRun {
         let Self {
             tables,
             moved,
@@ -127,11 +127,11 @@ impl TableMix<'_> {
             run.time = run.time.plus(moving);
         }
         let time = run.time.scaled(1.0 / f64::from(series.runs));
-        Run { time, ..run }
+        TimedRun { time, ..run }
     }
 }
 
-/// Runs the operations `range` of one part. Returns the numbers of operations, of results, and of
+/// **Timed**: runs the operations `range` of one part. Returns the numbers of operations, of results, and of
 /// refused edits: tables have no edits.
 fn run_range(
     tables: &mut Tables,
@@ -175,7 +175,7 @@ impl TimedBackend for TableMix<'_> {
         self.tables.bytes()
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let Self {
             tables,
             handles,
@@ -198,7 +198,7 @@ impl TimedBackend for TableMix<'_> {
                     run_range(tables, handles, action, range)
                 })
             }
-            Task::Program => Run::refused(NO_PROGRAM.into(), series),
+            Task::Program => TimedRun::refused(NO_PROGRAM.into(), series),
         }
     }
 }

@@ -6,7 +6,7 @@ use sixfold::{PolygonMesh, Representation};
 use sixfold_results::OperationGroup;
 
 use super::{Description, ElementKind, Unit};
-use crate::job::{Outcome, Run};
+use crate::job::{Outcome, TimedRun};
 use crate::series::{Series, time_making};
 
 pub(super) const DESCRIPTION: Description = Description {
@@ -21,7 +21,11 @@ pub(super) const DESCRIPTION: Description = Description {
 };
 
 /// Builds the structure of `mesh` again.
-pub(crate) fn run<M: Representation>(mesh: &M, polygons: &PolygonMesh, series: &Series<'_>) -> Run {
+pub(crate) fn run<M: Representation>(
+    mesh: &M,
+    polygons: &PolygonMesh,
+    series: &Series<'_>,
+) -> TimedRun {
     let build = || M::from_polygons(black_box(polygons)).ok();
     let (time, built) = time_making(series, mesh.memory().total(), build);
     let outcome = built.flatten().map(|mesh| Outcome {
@@ -29,5 +33,5 @@ pub(crate) fn run<M: Representation>(mesh: &M, polygons: &PolygonMesh, series: &
         elements: mesh.face_count() as u64,
         refused: 0,
     });
-    Run::done(time, outcome)
+    TimedRun::done(time, outcome)
 }

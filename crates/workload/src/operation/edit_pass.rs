@@ -10,7 +10,7 @@ use sixfold_results::{OperationGroup, Time};
 use super::subdivision::patch;
 use super::{Checksum, Description, ElementKind, Unit};
 use crate::backend::Backend;
-use crate::job::{ElementSample, Outcome, Run};
+use crate::job::{ElementSample, Outcome, TimedRun};
 use crate::series::{ReusedCopies, Series};
 
 sixfold_core::named! {
@@ -235,6 +235,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for EditPassRun<M> {
     }
 }
 
+/// **Timed**: splits every face at its middle, and collapses an edge of each new vertex.
 #[inline(never)]
 fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
     let mut edits = Edits::default();
@@ -266,6 +267,7 @@ fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
     edits
 }
 
+/// **Timed**: flips every edge, and then flips it again.
 #[inline(never)]
 fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
     let mut edits = Edits::default();
@@ -286,6 +288,7 @@ fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
     edits
 }
 
+/// **Timed**: decimates the mesh to `ratio` of its faces.
 #[inline(never)]
 fn decimate_to<M: MeshEdit + 'static>(mesh: &mut M, algorithms: &Algorithms, ratio: f64) -> Edits {
     let elements = mesh.face_count() as u64;
@@ -402,13 +405,13 @@ pub(crate) fn run(
     polygons: &PolygonMesh,
     sample: Option<ElementSample>,
     series: &Series<'_>,
-) -> Run {
+) -> TimedRun {
     let piece = sample.map(|sample| patch(polygons, sample.size));
     let input = piece.as_ref().unwrap_or(polygons);
     let editor: Option<PreparedEditor> = pass.prepare(backend, input);
     let mut editor = match editor.unwrap_or_else(|| Err("it cannot be edited".into())) {
         Ok(editor) => editor,
-        Err(refusal) => return Run::refused(refusal, series),
+        Err(refusal) => return TimedRun::refused(refusal, series),
     };
     let time = editor.time(series);
     let outcome = series.check.then(|| {
@@ -420,7 +423,7 @@ pub(crate) fn run(
         }
     });
     let scale = polygons.face_count() as f64 / input.face_count().max(1) as f64;
-    Run::done(time.scaled(scale), outcome)
+    TimedRun::done(time.scaled(scale), outcome)
 }
 
 /// Returns the counts of the mesh after `pass`.

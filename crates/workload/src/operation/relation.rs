@@ -64,7 +64,7 @@ const fn describe(relation: Relation, about: &'static str, visits: Visits) -> De
     }
 }
 
-/// Queries `relation` of all elements.
+/// **Timed**: queries `relation` of all elements.
 ///
 /// Each loop is a function of its own, of the shape that programs of users have. In one function with
 /// nine loops, the compiler changes the loops: on an Intel Xeon (family 6, model 167), `face_vertices`

@@ -11,7 +11,7 @@ use sixfold_results::OperationGroup;
 
 use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
 use crate::backend::Backend;
-use crate::job::{ElementSample, Outcome, Run};
+use crate::job::{ElementSample, Outcome, TimedRun};
 use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
 
@@ -98,14 +98,14 @@ pub(crate) fn run(
     polygons: &PolygonMesh,
     sample: Option<ElementSample>,
     series: &Series<'_>,
-) -> Run {
+) -> TimedRun {
     let Some(ElementSample { size, .. }) = sample else {
         return subdivide(backend, job, polygons, series);
     };
     let patch = patch(polygons, size);
     let scale = polygons.face_count() as f64 / patch.face_count() as f64;
     let run = subdivide(backend, job, &patch, series);
-    Run {
+    TimedRun {
         time: run.time.scaled(scale),
         ..run
     }
@@ -131,13 +131,13 @@ fn subdivide(
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
-) -> Run {
+) -> TimedRun {
     // Clock, caches and page faults then belong to the thread of the pool.
     let on_thread =
         |pool: &ThreadPool| pool.install(|| set_up_and_run(backend, job, polygons, series));
     one_thread_pool()
         .and_then(on_thread)
-        .unwrap_or_else(|refusal| Run::refused(refusal, series))
+        .unwrap_or_else(|refusal| TimedRun::refused(refusal, series))
 }
 
 fn set_up_and_run(
@@ -145,7 +145,7 @@ fn set_up_and_run(
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
-) -> Result<Run, String> {
+) -> Result<TimedRun, String> {
     check_degrees(job, polygons).map_err(|error| error.to_string())?;
     let refiner = job.prepare(backend, polygons, &Creases::default());
     let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
@@ -165,7 +165,7 @@ fn set_up_and_run(
             refused: 0,
         }
     });
-    Ok(Run::done(time, outcome))
+    Ok(TimedRun::done(time, outcome))
 }
 
 /// Checks that the scheme accepts the degrees of the faces. The error is then the same for all

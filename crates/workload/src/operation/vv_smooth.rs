@@ -7,7 +7,7 @@ use sixfold_results::Time;
 
 use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
 use crate::sweeps::{All, Elements, Outputs, SweepResult, count_each, field_sum};
-use crate::job::{Outcome, Run};
+use crate::job::{Outcome, TimedRun};
 use crate::series::{ReusedCopies, Series};
 use crate::timed_structure::{fill_caches, fill_caches_with_outputs};
 
@@ -58,7 +58,7 @@ pub(crate) fn run<M: Representation>(
     mesh: &M,
     outputs: &mut Outputs<M>,
     series: &Series<'_>,
-) -> Run {
+) -> TimedRun {
     let mut copies = ReusedCopies::default();
     let mut result = SweepResult::default();
     let mut moved = Ok(());
@@ -97,7 +97,7 @@ pub(crate) fn run<M: Representation>(
             refused: 0,
         }
     });
-    Run::done(time, outcome)
+    TimedRun::done(time, outcome)
 }
 
 /// Returns the time in which a copy of `mesh` takes the means of the neighbours as its positions.

@@ -26,7 +26,7 @@ pub(crate) trait Form {
         polygons: &PolygonMesh,
     ) -> Result<Self::Scratch, String>;
 
-    /// Runs the program once.
+    /// **Timed**: runs the program once.
     fn run(program: &Self::Program, mesh: &mut Self::Mesh, scratch: &mut Self::Scratch) -> Outcome;
 }
 

@@ -10,7 +10,7 @@ use super::Program;
 use super::forms::Queries;
 use super::recorded::Recorded;
 use super::subject::{ONLY_WHOLE, ProgramRefusal, message, record, run_program};
-use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::operation::Operation;
 use crate::series::Series;
 use crate::tables::{TABLES, Tables, time_building};
@@ -104,11 +104,11 @@ impl<P: Program> TimedBackend for OnTables<'_, P> {
         }
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         match job.task {
             Task::Operation(Operation::Build) => run_program(series, || Ok(self.build(series))),
             Task::Program => run_program(series, || Ok(self.run_program(series))),
-            _ => Run::refused(ONLY_WHOLE.into(), series),
+            _ => TimedRun::refused(ONLY_WHOLE.into(), series),
         }
     }
 }

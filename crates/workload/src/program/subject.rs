@@ -10,7 +10,7 @@ use sixfold::{BuildError, MeshQuery, PolygonMesh, QueryCost, Representation};
 use super::forms::Form;
 use super::recorded::{Asked, Recorded};
 use super::tape::TapedRun;
-use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::operation::Operation;
 use crate::series::{ReusedCopies, Series, time_making};
 use sixfold_results::Time;
@@ -147,11 +147,11 @@ impl<F: Form> TimedBackend for Subject<'_, F> {
         }
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         match job.task {
             Task::Operation(Operation::Build) => run_program(series, || Ok(self.build(series))),
             Task::Program => run_program(series, || self.run_program(series)),
-            _ => Run::refused(ONLY_WHOLE.into(), series),
+            _ => TimedRun::refused(ONLY_WHOLE.into(), series),
         }
     }
 }
@@ -164,7 +164,7 @@ pub(super) const ONLY_WHOLE: &str = "a program runs only as a whole";
 pub(super) fn run_program(
     series: &Series<'_>,
     work: impl FnOnce() -> Result<(Time, Option<Outcome>), String>,
-) -> Run {
+) -> TimedRun {
     let done = catch_unwind(AssertUnwindSafe(work));
     let done = done.map_err(|panic| format!("the program panicked: {}", message(panic.as_ref())));
     let refused = match done.and_then(|done| done) {
@@ -177,10 +177,10 @@ pub(super) fn run_program(
             "the program counted no work, so there is nothing to measure".into()
         }
         Ok((time, outcome)) => {
-            return Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome);
+            return TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome);
         }
     };
-    Run::refused(refused, series)
+    TimedRun::refused(refused, series)
 }
 
 fn set_up<F: Form>(

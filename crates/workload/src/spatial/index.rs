@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use super::queries::{Input, Triangle, Vertex};
 use crate::clock::Clock;
-use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::series::Series;
 use sixfold::spatial::{
     Bvh, Item, ItemList, KdTree, Neighbour, Octree, PointQueries, SpatialError, SpatialIndex,
@@ -163,9 +163,9 @@ impl<V: SpatialIndex<Vertex>, T: SpatialIndex<Triangle>> TimedBackend for Indice
         }
     }
 
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let Task::Part(part) = job.task else {
-            return Run::refused("a spatial index has no operations of meshes".into(), series);
+            return TimedRun::refused("a spatial index has no operations of meshes".into(), series);
         };
         let task = SpatialTask::ALL[part];
         let all = self.elements(task);
@@ -183,7 +183,7 @@ impl<V: SpatialIndex<Vertex>, T: SpatialIndex<Triangle>> TimedBackend for Indice
             elements: all as u64,
             refused: 0,
         });
-        Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
+        TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
     }
 }
 

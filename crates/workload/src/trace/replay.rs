@@ -167,7 +167,7 @@ impl<M: MeshQuery> Replay<M> {
         }
     }
 
-    /// Runs all calls. `edit` does an edit; `set_positions` writes positions.
+    /// **Timed**: runs all calls. `edit` does an edit; `set_positions` writes positions.
     #[inline(always)]
     fn run(
         &self,

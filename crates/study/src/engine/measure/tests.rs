@@ -89,7 +89,7 @@ impl TimedBackend for Synthetic {
         self.machine.work(self.placement.rebuild_ns);
         self.placement.rebuilt.set(self.placement.rebuilt.get() + 1);
     }
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let Series { runs, clock, .. } = *series;
         let size = job
             .sample
@@ -111,7 +111,7 @@ impl TimedBackend for Synthetic {
             self.machine.work(ns);
         }
         let scale = self.elements as f64 / size as f64 / f64::from(runs);
-        Run::done((clock.now() - start).scaled(scale), None)
+        TimedRun::done((clock.now() - start).scaled(scale), None)
     }
 }
 

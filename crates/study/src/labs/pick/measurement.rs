@@ -8,7 +8,7 @@ use sixfold_results::{
 };
 use sixfold_workload::{Operation, Task, TimedBackend};
 
-use crate::engine::bench::{Bench, Columns, Measured, Trial};
+use crate::engine::bench::{Bench, Columns, Trial, TrialResult};
 use crate::engine::effort::Effort;
 use crate::engine::measure::{Entry, Progress};
 use crate::inspect::StudyMesh;
@@ -33,7 +33,7 @@ pub(crate) struct PickMeasurement<'c, 'm> {
     pub(crate) progress: &'c mut dyn FnMut(f64, &str),
 }
 
-pub(crate) struct Outcome {
+pub(crate) struct MeshOutcome {
     pub(crate) mesh: MeshReport,
     pub(crate) ranking: Vec<Ranked>,
     pub(crate) excluded: Vec<Excluded>,
@@ -55,7 +55,7 @@ impl PickMeasurement<'_, '_> {
         backends: Vec<Contestant<'b>>,
         control: Option<Contestant<'b>>,
         mut excluded: Vec<Excluded>,
-    ) -> Outcome
+    ) -> MeshOutcome
     where
         Self: 'b,
     {
@@ -86,7 +86,7 @@ impl PickMeasurement<'_, '_> {
             progress(0.1 + 0.9 * at.done, &format!("{stage} {task} on {backend}"));
         });
         let (samples, shortest_ns) = (measured.samples(), measured.shortest_ns());
-        let Measured {
+        let TrialResult {
             entries,
             second,
             agreements,
@@ -130,7 +130,7 @@ impl PickMeasurement<'_, '_> {
         let wrong = wrong
             .into_iter()
             .map(|subject| candidates[subject].name.clone());
-        Outcome {
+        MeshOutcome {
             mesh: self.study_mesh.report(),
             samples,
             break_even: break_even(&measured, &ranking, operations),

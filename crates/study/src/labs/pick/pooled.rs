@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use sixfold_workload::Workload;
 
 use crate::labs::pick::choice::choose;
-use crate::labs::pick::measurement::Outcome;
+use crate::labs::pick::measurement::MeshOutcome;
 use crate::labs::pick::reasons;
 use sixfold_results::ranking::NO_DIFFERENCE;
 use sixfold_results::statistics::MIN_SAMPLES;
@@ -25,7 +25,7 @@ pub(crate) struct Question {
 /// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
 /// are compared by geometric means over the meshes.
 pub(crate) fn pooled(
-    mut outcomes: Vec<Outcome>,
+    mut outcomes: Vec<MeshOutcome>,
     question: Question,
     timer: Timer,
     run: Run,
@@ -111,7 +111,7 @@ pub(crate) fn pooled(
 
 /// Ranks the backends with results on all meshes by the geometric mean of their times. A mean with a
 /// lower bound is one itself, and comes last.
-fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
+fn ranked_on_all(outcomes: &[MeshOutcome], noise: f64) -> Vec<Ranked> {
     let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
     for ranked in outcomes.iter().flat_map(|o| &o.ranking) {
         by_name.entry(&ranked.backend).or_default().push(ranked);
@@ -196,7 +196,7 @@ fn parts_on_all(rows: &[&Ranked]) -> Vec<PartCost> {
 
 /// Returns the break-even of `ranked` over all meshes. The number of operations is `None` if
 /// building never pays off on some mesh.
-fn break_even_on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
+fn break_even_on_all(outcomes: &[MeshOutcome], ranked: &Ranked) -> Option<BreakEven> {
     let rows: Option<Vec<&BreakEven>> = outcomes
         .iter()
         .map(|o| {

@@ -22,7 +22,7 @@ use crate::external::isolated::{ChildTask, Isolated, Isolation};
 use crate::inspect::StudyMesh;
 use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::MeasuredMix;
-use crate::labs::pick::measurement::{self, Outcome, PickMeasurement};
+use crate::labs::pick::measurement::{self, MeshOutcome, PickMeasurement};
 use crate::labs::pick::pooled::{Question, pooled};
 use crate::labs::pick::tasks::{TaskPlan, program_entry, with_own_time};
 use crate::labs::pick::{PickError, needs};
@@ -165,7 +165,7 @@ pub(crate) fn pick_for_programs_on(
             }
             let conditions = Conditions {
                 qualification: Qualification {
-                    refusals: refusal::Candidate::from_study_mesh(study_mesh),
+                    refusals: refusal::BuildInput::from_study_mesh(study_mesh),
                     longest_run_ns,
                     machine,
                 },
@@ -269,7 +269,7 @@ fn measure_mesh(
     bench: &mut Bench<'_>,
     budget: Budget<'_>,
     progress: &mut dyn FnMut(f64, &str),
-) -> Outcome {
+) -> MeshOutcome {
     let polygons = &study_mesh.polygons;
     let settings = conditions.settings;
     let chosen = program.contestants().iter().filter(|c| settings.chooses(c));
@@ -364,7 +364,7 @@ impl<'e> Conditions<'e> {
 
 /// Decides whether a structure can hold a mesh and run a program in the available time.
 pub(crate) struct Qualification<'e> {
-    pub(crate) refusals: refusal::Candidate<'e>,
+    pub(crate) refusals: refusal::BuildInput<'e>,
     /// The longest time of one run on a structure that scans the mesh, in nanoseconds; infinity if
     /// there is no time limit.
     pub(crate) longest_run_ns: f64,

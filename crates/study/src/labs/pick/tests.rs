@@ -3,12 +3,12 @@
 use sixfold::{PolygonMesh, QueryCost, shapes};
 use sixfold_results::{Policy, Ranked, Results, Status};
 use sixfold_workload::{
-    Job, MixBackend, Operation, Outcome as TaskOutcome, Run, Series, Task, TimedBackend, built_in,
+    Job, MixBackend, Operation, Outcome, Series, Task, TimedBackend, TimedRun, built_in,
 };
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
-use crate::labs::pick::measurement::Outcome;
+use crate::labs::pick::measurement::MeshOutcome;
 
 struct KnownBackend {
     name: &'static str,
@@ -33,7 +33,7 @@ impl TimedBackend for KnownBackend {
     fn bytes(&self) -> usize {
         1 << 20
     }
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         let Self { operation_ns, .. } = *self;
         let (ns, operations) = match job.task {
             Task::Operation(Operation::Build) => (self.build_ns, 1),
@@ -45,12 +45,12 @@ impl TimedBackend for KnownBackend {
         let start = series.clock.now();
         self.machine.work(ns * f64::from(series.runs));
         let time = series.clock.now() - start;
-        let outcome = TaskOutcome {
+        let outcome = Outcome {
             checksum: (operations * self.yield_per_operation) as f64,
             elements: operations,
             refused: 0,
         };
-        Run::done(time.scaled(1.0 / f64::from(series.runs)), Some(outcome))
+        TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), Some(outcome))
     }
 }
 
@@ -84,7 +84,7 @@ fn settings(effort: Effort) -> PickSettings {
 const FAULTY: &str = "face-vertex";
 
 /// Measures an indexed face set of 50 ns per operation, and mixers with `costs_ns`.
-fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
+fn measure_known(costs_ns: &[f64], seed: u64) -> MeshOutcome {
     let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let effort = Effort::of_ms(1000);
     let settings = PickSettings {
@@ -568,7 +568,7 @@ fn a_run_has_the_settings_of_its_pick() {
 
 /// Returns the result of a measurement in which only a lower bound of half the fastest time is known
 /// of the winged-edge mesh.
-fn with_a_bound() -> Outcome {
+fn with_a_bound() -> MeshOutcome {
     let mut outcome = measure_known(&[10.0, 20.0, 30.0, 40.0], 3);
     let best_ns = outcome.ranking[0].ns_per_operation;
     let bound = outcome

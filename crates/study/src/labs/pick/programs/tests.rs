@@ -5,7 +5,7 @@ use sixfold::{
     BuildError, Capabilities, FaceId, InvariantError, MemoryFootprint, MoveError, Relation,
     VertexId, shapes,
 };
-use sixfold_workload::{Outcome as ProgramOutcome, Program};
+use sixfold_workload::{Outcome, Program};
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
@@ -134,7 +134,7 @@ impl Program for Queries {
         Ok(())
     }
 
-    fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> ProgramOutcome {
+    fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> Outcome {
         let results: usize = match self.0 {
             Relation::VertexVertices => mesh
                 .vertices()
@@ -144,7 +144,7 @@ impl Program for Queries {
             Relation::FaceFaces => mesh.faces().map(|f| mesh.face_faces(f).count()).sum(),
             _ => mesh.edges().map(|e| mesh.edge_faces(e).count()).sum(),
         };
-        ProgramOutcome::new(results as f64, results as u64)
+        Outcome::new(results as f64, results as u64)
     }
 }
 
