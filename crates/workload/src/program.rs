@@ -30,6 +30,7 @@ pub(crate) use forms::Form;
 pub use recorded::{Asked, Recorded};
 pub use recording::{Recording, Visits};
 pub use subject::ProgramRefusal;
+pub(crate) use suite::ProgramKind;
 pub use suite::{Contestant, Suite, SuiteProgram};
 
 /// Declares the trait of one kind of program.

@@ -12,6 +12,7 @@ use sixfold::Relation;
 use sixfold_core::EditByName;
 
 use crate::operation::ElementKind;
+use crate::program::ProgramKind;
 
 pub(crate) use replay::{EditReplay, PlainReplay};
 pub use text::TraceError;
@@ -76,14 +77,6 @@ pub(crate) struct TracedEdit {
     pub(crate) refused: bool,
 }
 
-/// What a trace needs from a structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum TraceKind {
-    Queries,
-    Moves,
-    Edits,
-}
-
 impl Trace {
     /// Makes a trace without calls, of a mesh with the given numbers of elements.
     pub(crate) fn new(program: &str, vertices: usize, faces: usize) -> Self {
@@ -111,13 +104,14 @@ impl Trace {
         self.len() == 0
     }
 
-    pub(crate) fn kind(&self) -> TraceKind {
+    /// Returns what the trace needs of a structure. O(calls).
+    pub(crate) fn kind(&self) -> ProgramKind {
         if !self.edits.is_empty() {
-            return TraceKind::Edits;
+            return ProgramKind::Edits;
         }
         match self.calls.iter().any(|c| c.op == Op::SetPositions) {
-            true => TraceKind::Moves,
-            false => TraceKind::Queries,
+            true => ProgramKind::Moves,
+            false => ProgramKind::Queries,
         }
     }
 }

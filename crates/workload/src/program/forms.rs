@@ -16,8 +16,8 @@ pub(crate) trait Form {
     /// The scratch data.
     type Scratch;
 
-    /// Returns whether a run changes the mesh, so that each run needs a fresh copy.
-    fn changes_mesh(program: &Self::Program) -> bool;
+    /// Returns whether a run changes the mesh, so that each run needs a fresh copy. O(1).
+    fn changes_mesh(scratch: &Self::Scratch) -> bool;
 
     /// Makes the scratch data. `polygons` is the mesh from which `mesh` was built.
     fn set_up(
@@ -41,7 +41,7 @@ macro_rules! form {
             type Mesh = M;
             type Scratch = P::Scratch<M>;
 
-            fn changes_mesh(_: &P) -> bool {
+            fn changes_mesh(_: &P::Scratch<M>) -> bool {
                 $changes
             }
 

@@ -67,7 +67,7 @@ impl<'p, F: Form> Subject<'p, F> {
     /// Runs the program as `series` describes. Returns the time of all runs, and the result of the
     /// program if `series` requests it.
     fn run_program(&mut self, series: &Series<'_>) -> Result<(Time, Option<Outcome>), String> {
-        if F::changes_mesh(&self.program) {
+        if F::changes_mesh(&self.scratch) {
             return self.run_on_copies(series);
         }
         let Self {

@@ -15,7 +15,7 @@ use super::subject::{ProgramRefusal, RecordedRun, Subject, record};
 use super::{EditProgram, MovingProgram, Program, RefineProgram, WalkProgram};
 use crate::job::TimedBackend;
 use crate::tables::{TABLE_TYPE, TABLES};
-use crate::trace::{EditReplay, PlainReplay, Trace, TraceKind};
+use crate::trace::{EditReplay, PlainReplay, Trace};
 
 /// Programs that are measured one after the other.
 ///
@@ -35,7 +35,7 @@ pub struct SuiteProgram {
 
 sixfold_core::named! {
     /// What a program needs of a structure.
-    enum ProgramKind: "kind of program" {
+    pub(crate) enum ProgramKind: "kind of program" {
         /// The program is a [`Program`].
         Queries = "queries",
         /// The program is a [`WalkProgram`].
@@ -93,22 +93,17 @@ impl Suite {
         let trace = Arc::new(trace);
         let mut contestants = Vec::new();
         match kind {
-            TraceKind::Queries | TraceKind::Moves => {
-                for_each_representation!(M => {
-                    contestants.push(Contestant::new::<PlainReplay<M>>(&trace));
-                });
-            }
-            TraceKind::Edits => {
+            ProgramKind::Edits => {
                 for_each_editable!(M => {
                     contestants.push(Contestant::new::<EditReplay<M>>(&trace));
                 });
             }
+            _ => {
+                for_each_representation!(M => {
+                    contestants.push(Contestant::new::<PlainReplay<M>>(&trace));
+                });
+            }
         }
-        let kind = match kind {
-            TraceKind::Queries => ProgramKind::Queries,
-            TraceKind::Moves => ProgramKind::Moves,
-            TraceKind::Edits => ProgramKind::Edits,
-        };
         let mut suite = self.with(name, kind, contestants);
         if let Some(program) = suite.programs.last_mut() {
             program.own_ns = own_ns;

@@ -11,7 +11,7 @@ use sixfold::{
 };
 use sixfold_core::{EditOf, ElementNames};
 
-use super::{ALL, Call, Op, Trace, TraceKind, TracedEdit};
+use super::{ALL, Call, Op, Trace, TracedEdit};
 use crate::handle_lists::HandleLists;
 use crate::job::Outcome;
 use crate::operation::ElementKind;
@@ -459,8 +459,8 @@ impl<M: Representation> Form for PlainReplay<M> {
     type Mesh = M;
     type Scratch = Replay<M>;
 
-    fn changes_mesh(trace: &Trace) -> bool {
-        trace.kind() == TraceKind::Moves
+    fn changes_mesh(replay: &Replay<M>) -> bool {
+        replay.positions.is_some()
     }
 
     fn set_up(trace: &Trace, mesh: &M, polygons: &PolygonMesh) -> Result<Replay<M>, String> {
@@ -484,7 +484,7 @@ impl<M: Representation + MeshEdit> Form for EditReplay<M> {
     type Mesh = M;
     type Scratch = Replay<M>;
 
-    fn changes_mesh(_: &Trace) -> bool {
+    fn changes_mesh(_: &Replay<M>) -> bool {
         true
     }
 

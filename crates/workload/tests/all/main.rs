@@ -3,4 +3,5 @@
 
 mod edits;
 mod mix;
+mod samples;
 mod subdivision;
