@@ -1,8 +1,11 @@
 //! Tests that need several crates.
 
+mod conformance;
 mod edit_data;
 mod editing;
 mod equivalence;
+mod face_and_edge_lists;
+mod face_and_edge_walk;
 mod facts;
 mod opensubdiv;
 mod operators;

@@ -17,7 +17,6 @@ use sixfold_results::Audit;
 use sixfold_study::{Backend, Heap, StudyMesh, audit};
 use stats_alloc::StatsAlloc;
 
-#[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
 
 use face_and_edge_lists::FaceAndEdgeLists;

@@ -17,11 +17,7 @@ use sixfold_study::{
     inspect, pick, study,
 };
 
-// The conformance suite uses this file too; see ARCHITECTURE.md.
-#[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
-mod face_and_edge_lists;
-
-use face_and_edge_lists::FaceAndEdgeLists;
+use crate::face_and_edge_lists::FaceAndEdgeLists;
 
 /// Returns the seventh structure without edits.
 fn lists() -> Backend {

@@ -27,6 +27,13 @@ thread_local! {
 ///
 /// Panics of other threads are printed as usual.
 pub(crate) fn catch_panic<T>(action: impl FnOnce() -> T) -> Result<T, CaughtPanic> {
+    let (mut action, mut result) = (Some(action), None);
+    catch_call(&mut || result = action.take().map(|action| action()))?;
+    Ok(result.expect("the action was called and has returned"))
+}
+
+/// A function of its own, which is compiled once and not for each action.
+fn catch_call(action: &mut dyn FnMut()) -> Result<(), CaughtPanic> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let print = panic::take_hook();

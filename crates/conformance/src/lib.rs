@@ -10,10 +10,10 @@
 //!   the model.
 //! - [`suite!`]: a macro that makes one `#[test]` for each law.
 //!
-//! A structure is tested with one line in its `tests/conformance.rs`:
+//! A structure is tested with one line in `tests/conformance.rs`:
 //!
 //! ```text
-//! sixfold_conformance::suite!(half_edge::HalfEdgeMesh);
+//! sixfold_conformance::suite!(sixfold::HalfEdgeMesh);
 //! ```
 //!
 //! This crate does not use the incidence code of `sixfold-core`, because the laws test that code.

@@ -5,7 +5,7 @@ use std::fmt::{Debug, Write};
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRunner};
-use sixfold_core::{Edit, PolygonMesh, Representation};
+use sixfold_core::{Capabilities, Edit, PolygonMesh, Representation};
 
 use crate::catch_panic::catch_panic;
 use crate::edit::{Action, Step, script};
@@ -26,6 +26,16 @@ pub(super) fn on_random_scripts<M: Representation>(
     fault: &str,
     run: impl Fn(&PolygonMesh, &[Step], &Executed),
 ) {
+    run_scripts(M::NAME, &M::CAPABILITIES, fault, &run);
+}
+
+/// A function of its own, which is compiled once and not for each law and structure.
+fn run_scripts(
+    name: &str,
+    capabilities: &Capabilities,
+    fault: &str,
+    run: &dyn Fn(&PolygonMesh, &[Step], &Executed),
+) {
     let mut config = Config {
         failure_persistence: None,
         max_shrink_iters: 4000,
@@ -34,13 +44,14 @@ pub(super) fn on_random_scripts<M: Representation>(
     if std::env::var_os("PROPTEST_CASES").is_none() {
         config.cases = SCRIPTS;
     }
-    let start = if M::CAPABILITIES.non_manifold_edges {
+    let start = if capabilities.non_manifold_edges {
         prop_oneof![manifold_mesh(), any_mesh()].boxed()
     } else {
         manifold_mesh().boxed()
     };
-    let start = start.prop_map(|polygons| {
-        if M::CAPABILITIES.polygons {
+    let polygons_allowed = capabilities.polygons;
+    let start = start.prop_map(move |polygons| {
+        if polygons_allowed {
             polygons
         } else {
             polygons.triangulated().expect("small").polygons
@@ -66,13 +77,9 @@ pub(super) fn on_random_scripts<M: Representation>(
                 );
             }
             let panic = panic.map_or_else(String::new, |panic| panic.to_string());
-            panic!(
-                "{} {fault} on {}{script}\n{panic}",
-                M::NAME,
-                one_line(&start)
-            )
+            panic!("{name} {fault} on {}{script}\n{panic}", one_line(&start))
         }
-        Err(TestError::Abort(reason)) => panic!("{}: the test was aborted: {reason}", M::NAME),
+        Err(TestError::Abort(reason)) => panic!("{name}: the test was aborted: {reason}"),
     }
 }
 

@@ -69,6 +69,9 @@ pub(crate) struct Entry {
     /// Whether a run of a task of a mix scans all faces. Operations are planned by the costs of
     /// their relations instead.
     pub(crate) scans: bool,
+    /// Cost of one element of a run, in visits of an element. Only a task that neither scans nor makes
+    /// elements is planned by it.
+    pub(crate) visits: f64,
     /// Whether the clock stops between runs of the task.
     pub(crate) pauses_clock: bool,
     /// The entry takes part in every n-th round at most.
@@ -149,6 +152,7 @@ impl Entry {
             per: "",
             case: "",
             scans: false,
+            visits: 1.0,
             pauses_clock: false,
             least_every: 1,
             untimed: 1,

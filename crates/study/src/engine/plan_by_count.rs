@@ -59,7 +59,7 @@ fn runs_per_sample(entry: &Entry, scans: bool, faces: usize) -> u32 {
     let each = match (makes, scans) {
         (_, true) => faces.max(1) as f64,
         (true, false) => VISITS_PER_MADE_ELEMENT,
-        (false, false) => 1.0,
+        (false, false) => entry.visits,
     };
     (VISITS_PER_SAMPLE / (elements * each + VISITS_PER_RUN))
         .ceil()
@@ -70,7 +70,7 @@ fn runs_per_sample(entry: &Entry, scans: bool, faces: usize) -> u32 {
 mod tests {
     use super::*;
     use sixfold::Relation;
-    use sixfold_workload::{Operation, Outcome};
+    use sixfold_workload::{Operation, Outcome, Task};
 
     #[test]
     fn runs_of_a_sample_follow_from_the_elements() {
@@ -87,6 +87,10 @@ mod tests {
         assert_eq!(runs(4, true, false), 1_667, "each element visits 10 faces");
         assert_eq!(runs(4, false, true), 455, "making an element counts 50");
         assert_eq!(runs(4, true, true), 1_667);
+        let mut search = Entry::of_task(0, Task::Part(0), "nearest_vertex");
+        search.outcome = Some(Outcome::new(1.0, 4));
+        search.visits = 20.0;
+        assert_eq!(runs_per_sample(&search, false, 10), 1_000);
         let of = |name: &str| {
             let mut entry = Entry::new(0, name.parse().expect("an operation"));
             entry.outcome = Some(Outcome::new(1.0, 4));

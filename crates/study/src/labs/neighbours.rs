@@ -30,6 +30,9 @@ use cheapest::{Cost, cheapest};
 
 /// Maximum number of elements that the list visits in one run.
 const LIST_VISITS: usize = 4_000_000;
+/// The number of visits of an element that take as long as a query of an index. A query takes some
+/// hundred nanoseconds, and longer on a large mesh.
+const VISITS_PER_QUERY: f64 = 50.0;
 
 /// What [`neighbours`] measures.
 #[derive(Clone, Debug)]
@@ -194,12 +197,14 @@ fn entries(columns: &Columns<'_>, input: &Input) -> Vec<Entry> {
             let mut entry = Entry::of_task(subject, Task::Part(part), task.name());
             entry.pauses_clock = task.build().is_none();
             entry.per = task.unit();
+            entry.visits = VISITS_PER_QUERY;
             if index.name() == LIST {
                 let items = match task.build() {
                     Some(SpatialTask::BuildVertices) => input.vertices.len(),
                     Some(_) => input.triangles.len(),
                     None => 0,
                 };
+                entry.visits = items as f64;
                 let size = (LIST_VISITS / items.max(1)).max(1);
                 if items > 0 && size < input.points.len() {
                     entry.scans = true;

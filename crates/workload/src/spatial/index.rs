@@ -27,8 +27,9 @@ pub struct IndexKind {
     build: for<'i> fn(&'static str, &'i Input) -> Built<'i>,
 }
 
-/// All kinds of indices, in the order of the tables. The list comes first.
-pub const KINDS: [IndexKind; 5] = [
+/// All kinds of indices, in the order of the tables. The list comes first. A static, so that this crate compiles the
+/// functions, and not each crate that uses the constant.
+pub static KINDS: [IndexKind; 5] = [
     IndexKind::new::<ItemList<Vertex>, ItemList<Triangle>>(LIST),
     IndexKind::new::<UniformGrid<Vertex>, UniformGrid<Triangle>>("grid"),
     IndexKind::new::<Octree<Vertex>, Octree<Triangle>>("octree"),

@@ -234,9 +234,9 @@ fn a_diagonal_that_is_an_edge_is_not_cut_again() {
 
 #[test]
 fn triangles_stay() {
-    let icosahedron = sixfold_shapes::icosahedron();
+    let icosahedron = sixfold::shapes::icosahedron();
     assert_eq!(triangulated(&icosahedron), icosahedron);
-    let prism = sixfold_shapes::prism(7).expect("small");
+    let prism = sixfold::shapes::prism(7).expect("small");
     let triangles = triangulated(&prism);
     assert_eq!(triangles.face_count(), 2 * 7 + 2 * 5);
     assert_eq!(triangles.faces().face(FaceId::new(0)).len(), 3);
