@@ -29,7 +29,7 @@ use proptest::test_runner::{RngSeed, TestRunner};
 use sixfold::subdivision::{LimitNormal, LimitPoint, Scheme, subdivide, subdivide_native};
 use sixfold::subdivision::{Method, SubdivisionError};
 use sixfold::{
-    Creases, IndexedFaceSet, Point, PolygonMesh, Refine, Representation, SHARPNESS_INFINITE,
+    Creases, FaceVertexMesh, Point, PolygonMesh, Refine, Representation, SHARPNESS_INFINITE,
     VertexId, for_each_refinable,
 };
 
@@ -296,7 +296,7 @@ fn compare_case(reference: &Reference, case: &Case, counts: &Counts) {
         add(&counts.limits, limits.unwrap_or(0));
     };
     for method in [Method::Gather, Method::Scatter] {
-        type M = IndexedFaceSet;
+        type M = FaceVertexMesh;
         let next = |mesh: &M, creases: &Creases, level| {
             let step = match method {
                 Method::Gather => subdivision.gather(mesh, creases, level)?,

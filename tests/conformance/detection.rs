@@ -5,8 +5,8 @@ use std::panic::catch_unwind;
 
 use sixfold_conformance::{check_law, law};
 
-use crate::face_and_edge_lists::FaceAndEdgeLists;
 use super::flawed::{Flaw, FlawKind, Flawed};
+use crate::face_and_edge_lists::FaceAndEdgeLists;
 
 /// `FlawKind => law, "words of the message"` makes a test: the law must fail for the structure with
 /// this flaw, with a message that contains these words.

@@ -308,7 +308,9 @@ fn places_without_meshes_do_not_stop_the_others() {
     fs::create_dir(sixfold.folder().join("prints")).expect("a folder");
     sixfold.file("prints/part.FBX", "text");
     sixfold.file("scans/b.x3d", "text");
-    let run = sixfold.run(&["study", "empty", "prints", "scans/a.OBJ", "--rounds", "2"]);
+    let rounds = ["--rounds", "2", "--operations", "boundary"];
+    let places = ["study", "empty", "prints", "scans/a.OBJ"];
+    let run = sixfold.run(&[&places[..], &rounds].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     for message in [
         "empty: not studied: no mesh file in this directory or its subdirectories\n",
@@ -316,7 +318,7 @@ fn places_without_meshes_do_not_stop_the_others() {
     ] {
         assert!(run.stderr.contains(message), "{message}: {run:?}");
     }
-    let run = sixfold.run(&["study", "scans", "--rounds", "2"]);
+    let run = sixfold.run(&[&["study", "scans"][..], &rounds].concat());
     assert!(
         run.stderr
             .contains("note: scans: other files are left out: 1 .txt, 1 .x3d, 1 hidden; convert"),
