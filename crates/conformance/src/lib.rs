@@ -10,11 +10,13 @@
 //!   the model.
 //! - [`suite!`]: a macro that makes one `#[test]` for each law.
 //!
-//! A structure is tested with one line in `tests/conformance.rs`:
+//! A structure is tested with one line in a test of its crate:
 //!
 //! ```text
-//! sixfold_conformance::suite!(sixfold::HalfEdgeMesh);
+//! sixfold_conformance::suite!(your_mesh::YourMesh);
 //! ```
+//!
+//! The six structures of Sixfold are tested in `tests/conformance.rs` of the workspace.
 //!
 //! This crate does not use the incidence code of `sixfold-core`, because the laws test that code.
 

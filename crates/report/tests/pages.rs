@@ -385,7 +385,7 @@ fn timed(mesh: StudyMesh, times: &[(&str, f64)]) -> Report {
         let elements = row.elements.expect("measured") as f64;
         row.ns_per_element = Some(*ns);
         row.median_ns = Some(ns * elements);
-        row.ratio_to_best = Some(ns / least);
+        [row.ratio_to_best, row.ratio_ci_low, row.ratio_ci_high] = [Some(ns / least); 3];
         row.standing = Some(if *ns == least {
             Standing::Best
         } else {
