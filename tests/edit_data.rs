@@ -155,8 +155,9 @@ fn data_follows_remeshing_in_the_same_way_on_all() {
         ..Decimation::default()
     };
     for (polygons, length) in surfaces().iter().zip([0.2, 0.25, 1.6, 0.9]) {
+        // One iteration splits, collapses and flips edges, and moves vertices.
         let remeshing = Remeshing {
-            iterations: 3,
+            iterations: 1,
             ..Remeshing::with_edge_length(length)
         };
         compare_structures(&remeshing, polygons);

@@ -65,8 +65,11 @@ impl<P: Probe> OrientedWalk for FaceAndEdgeLists<P> {
     }
 
     fn side_edge(&self, s: ListSide) -> EdgeId {
-        let mut edges = self.face_edges(s.face);
-        edges.nth(s.at).expect("a side runs along an edge")
+        let mut ends = [self.side_origin(s), self.side_target(s)];
+        ends.sort_unstable();
+        let mut edges = self.edges();
+        let edge = edges.find(|&e| self.edge_vertices(e) == ends);
+        edge.expect("a side runs along an edge")
     }
 
     fn side_map<T: Clone>(&self, value: T) -> SideMap<Self, T> {

@@ -370,7 +370,7 @@ fn an_interrupted_study_can_be_resumed() {
         "--rounds",
         "500",
         "--operations",
-        "boundary",
+        "face_vertices",
         "--report",
         "out",
     ];
