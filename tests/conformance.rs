@@ -21,7 +21,7 @@ mod indexed_face_set {
     sixfold_conformance::edit_suite!(sixfold::EditableIndexedFaceSet);
 }
 
-/// Makes the tests of a structure whose faces store their neighbours.
+/// Makes the tests of a structure that can also refine its own tables and step from side to side.
 macro_rules! linked_suite {
     ($mesh:ty, $editable:ty) => {
         sixfold_conformance::suite!($mesh);

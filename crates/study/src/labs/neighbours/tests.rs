@@ -50,6 +50,24 @@ fn ball(frequency: usize) -> StudyMesh {
 }
 
 #[test]
+fn runs_of_a_sample_follow_from_what_a_query_visits() {
+    let mesh = ball(2);
+    let settings = NeighboursSettings {
+        effort: Effort::of_rounds(1),
+        ..settings()
+    };
+    let report = measure(&mesh, &settings);
+    assert_eq!(report.queries, 42);
+    let runs = |task: SpatialTask| {
+        let rows = report.rows(task.name());
+        rows.map(|row| row.runs_per_sample).collect::<Vec<_>>()
+    };
+    // 100,000 visits: a query of the list visits 42 vertices or 80 triangles, of another index 50.
+    assert_eq!(runs(SpatialTask::NearestVertex), [57, 48, 48, 48, 48]);
+    assert_eq!(runs(SpatialTask::ClosestPoint), [30, 48, 48, 48, 48]);
+}
+
+#[test]
 fn all_indices_give_the_same_answers() {
     let mesh = ball(30);
     for points in [QueryPoints::Near, QueryPoints::Box] {
