@@ -3,6 +3,7 @@
 mod edits;
 mod walks;
 
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -106,10 +107,11 @@ fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Fai
 /// Traces a query.
 fn queries(
     path: Option<&Path>,
-    [relation, element]: [&String; 2],
+    query: [&OsString; 2],
     arguments: &arguments::Trace,
 ) -> Result<ExitCode, Failure> {
-    let relation = arguments::relation(relation).map_err(Failure::usage)?;
+    let [relation, element] = query.map(|word| word.to_string_lossy());
+    let relation = arguments::relation(&relation).map_err(Failure::usage)?;
     let element: ElementName = element.parse().map_err(Failure::usage)?;
     let mut begun = begin(path, arguments)?;
     let name = begun.name_after_edits();
