@@ -1,8 +1,10 @@
 //! What an edit reads and writes: the rows before and after.
 
+use std::fmt::{self, Debug, Formatter};
+
 use rustc_hash::FxHashSet;
 use serde::Serialize;
-use sixfold::{EditRecord, Handle, MeshEdit};
+use sixfold::{EditRecord, Handle, MeshEdit, Refusal};
 use sixfold_core::{
     Access, AccessKind, Described, EditByName, EditOf, ElementName, FacesBefore, Field,
     NameChanges, RecordTable,
@@ -10,7 +12,7 @@ use sixfold_core::{
 
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
-use crate::trace::stored_fields;
+use crate::trace::{retain_named, stored_fields};
 
 /// One edit on one structure: the rows that it reads, writes, makes and deletes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -43,6 +45,10 @@ pub struct EditTrace {
     /// The elements whose rows have other numbers after the edit: the name of the element, and the rows
     /// before and after.
     pub renamed: Vec<[String; 3]>,
+    /// The rows of [`rows`](Self::rows), and in their fields after the edit, whose elements have other
+    /// numbers: the name of the row, and the name of the element.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub moved: Vec<[String; 2]>,
 }
 
 /// The numbers of elements of a mesh.
@@ -141,7 +147,11 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();
         let (reads, writes) = (count(AccessKind::Read), count(AccessKind::Write));
         let names = self.follow(&record, &cut);
+        let mut other_rows = self.moved_rows();
         self.probe.take();
+        let rows = changes.rows.iter().map(|row| &row.row);
+        let fields = changes.rows.iter().filter_map(|row| row.after.as_ref());
+        retain_named(&mut other_rows, rows.chain(fields.flatten()));
         let shown = |names: Vec<ElementName>| {
             let names = names.iter().take(most);
             names.map(ElementName::to_string).collect()
@@ -164,6 +174,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
             created: shown(names.created),
             removed: shown(names.removed),
             renamed: moved_vertices.chain(moved_faces).take(most).collect(),
+            moved: other_rows,
         })
     }
 
@@ -189,7 +200,36 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         // The reads that looked up the arguments are forgotten.
         self.probe.take();
         let refusal = edit.apply(&mut self.mesh, &mut record).err();
-        (refusal.map(|refusal| refusal.to_string()), record, cut)
+        let refusal = refusal.map(|refusal| self.probe.pause(|| self.in_names(refusal)));
+        (refusal, record, cut)
+    }
+
+    /// Returns a refusal as text, with the names of the elements. The edit changed nothing, so the handles
+    /// are those before it.
+    fn in_names(&self, refusal: Refusal<P>) -> String {
+        let names = &self.names;
+        let vertex = |v| Shown::new(names.vertex_number(v).map(ElementName::Vertex), v);
+        let edge = |e| {
+            let ends = names.edge_numbers(self.mesh.edge_vertices(e));
+            Shown::new(ends.map(ElementName::Edge), e)
+        };
+        let face = |f| Shown::new(names.face_number(f).map(ElementName::Face), f);
+        refusal.map_handles(vertex, edge, face).to_string()
+    }
+}
+
+/// An element in the message of a refusal: its name, or its handle.
+struct Shown(String);
+
+impl Shown {
+    fn new(name: Option<ElementName>, handle: impl Debug) -> Self {
+        Self(name.map_or_else(|| format!("{handle:?}"), |name| name.to_string()))
+    }
+}
+
+impl Debug for Shown {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
     }
 }
 

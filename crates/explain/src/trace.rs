@@ -1,5 +1,6 @@
 //! The reads of one query, in their order, each with the reason for which its row is read.
 
+use rustc_hash::FxHashSet;
 use serde::Serialize;
 use sixfold::Relation;
 use sixfold_core::{Access, Column, Described, Element, ElementName, Field, Line, RecordTable};
@@ -33,6 +34,9 @@ pub struct Trace {
     pub cost: Cost,
     /// The names of the results, in their order.
     pub results: Vec<String>,
+    /// The rows in the steps that an edit moved ([`BuiltMesh::moved_rows`](crate::BuiltMesh::moved_rows)).
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub moved: Vec<[String; 2]>,
 }
 
 /// What the reads of a query or of a walk cost. The marks of deleted elements do not count: the form of a structure
@@ -106,6 +110,7 @@ pub(crate) fn trace<P: Described>(
         ..
     } = recorder;
     let name = named.name(handle);
+    let moved = moved_among(named.moved_rows(), &steps);
     named.probe.take();
     Ok(Trace {
         structure: named.structure,
@@ -115,7 +120,35 @@ pub(crate) fn trace<P: Described>(
         steps,
         cost: cost(&reads),
         results,
+        moved,
     })
+}
+
+/// Returns those of `moved` whose rows are in the texts of the steps.
+pub(crate) fn moved_among(mut moved: Vec<[String; 2]>, steps: &[Step]) -> Vec<[String; 2]> {
+    if moved.is_empty() {
+        return moved;
+    }
+    let reads = steps.iter().filter_map(|step| match step {
+        Step::Read(read) => Some(read),
+        Step::Yield { .. } => None,
+    });
+    let texts = reads.flat_map(|read| {
+        let fields = read.fields.iter().map(|(_, value)| value);
+        fields.chain([&read.row, &read.reason.text])
+    });
+    retain_named(&mut moved, texts);
+    moved
+}
+
+/// Retains the rows whose names are words of the texts.
+pub(crate) fn retain_named<'t>(
+    moved: &mut Vec<[String; 2]>,
+    texts: impl Iterator<Item = &'t String>,
+) {
+    let words = texts.flat_map(|text| text.split(|c: char| !c.is_alphanumeric()));
+    let words: FxHashSet<&str> = words.collect();
+    moved.retain(|[row, _]| words.contains(row.as_str()));
 }
 
 /// Runs a query, one result after the other.

@@ -12,7 +12,7 @@ use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::Reason;
 use crate::records::row_name;
-use crate::trace::{Cost, Query, Read, Step, cost, stored_fields, trace};
+use crate::trace::{Cost, Query, Read, Step, cost, moved_among, stored_fields, trace};
 use crate::walk_parser::{Kind, Program, Statement, Value, loop_variable, parse, text};
 
 /// A walk on one structure: what it reads, and what it yields.
@@ -34,6 +34,10 @@ pub struct Walk {
     pub stopped: Option<String>,
     /// The comparison with a relation, if one was asked for.
     pub expected: Option<Comparison>,
+    /// The rows in the steps that an edit moved ([`BuiltMesh::moved_rows`](crate::BuiltMesh::moved_rows)).
+    /// The lines of the walk and the results have the names of the elements.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub moved: Vec<[String; 2]>,
 }
 
 /// The comparison of the results of a walk with a relation. The order does not count, and each difference
@@ -93,6 +97,7 @@ pub(crate) fn walk<P: Described>(
         row_bytes: &named.row_bytes,
         words: P::WORDS,
         tables: named.mesh.tables(),
+        moved: named.moved_rows(),
         variables: BTreeMap::new(),
         steps: Vec::new(),
         reads: Vec::new(),
@@ -108,11 +113,13 @@ pub(crate) fn walk<P: Described>(
         steps,
         reads,
         results,
+        moved,
         ..
     } = walker;
     let compared = |(relation, element)| compare(named, relation, element, &results);
     Ok(Walk {
         structure: named.structure,
+        moved: moved_among(moved, &steps),
         expected: expected.map(compared).transpose()?,
         algorithm: program.lines,
         steps,
@@ -183,6 +190,8 @@ struct Walker<'m> {
     row_bytes: &'m HashMap<String, usize>,
     words: &'static [Word],
     tables: Vec<RecordTable>,
+    /// The rows that an edit moved, and the names of their elements.
+    moved: Vec<[String; 2]>,
     /// The values of the variables; `None` for none.
     variables: BTreeMap<String, Option<RowName>>,
     steps: Vec<Step>,
@@ -211,7 +220,10 @@ impl Walker<'_> {
                 let Some(row) = self.value(value)? else {
                     return Err(self.stopped(format!("{} is none", text(value))));
                 };
-                let (result, line) = (row.to_string(), Some(self.line));
+                let row = row.to_string();
+                let moved = self.moved.iter().find(|[at, _]| *at == row);
+                let result = moved.map_or(row, |[_, name]| name.clone());
+                let line = Some(self.line);
                 self.results.push(result.clone());
                 self.steps.push(Step::Yield { result, line });
                 Ok(())
@@ -276,12 +288,17 @@ impl Walker<'_> {
         }
     }
 
-    /// Returns the row with this name.
+    /// Returns the row with this name, or of the element with this name.
     fn row(&self, name: &str) -> Result<RowName, End> {
-        let (letter, row) = row_name(name).unzip();
+        let moved_here = self.moved.iter().find(|[_, element]| element == name);
+        let row = moved_here.map_or(name, |[row, _]| row);
+        // The element was removed, and its row has another one.
+        let is_removed = row == name && self.moved.iter().any(|[row, _]| row == name);
+        let (letter, row) = row_name(row).unzip();
         let mut tables = self.tables.iter();
         let table = tables.find(|table| Some(table.letter) == letter);
         if let (Some(table), Some(row)) = (table, row)
+            && !is_removed
             && self.mesh.fields(table.name, row as usize).is_some()
         {
             self.probe.take();

@@ -94,11 +94,14 @@ pub(crate) fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, ReadError
                 };
             }
         };
+        let (line, column) = (error.line(), error.column());
+        let cause = error.to_string();
+        let place = format!(" at line {line} column {column}");
         ReadError::NoJson {
             what,
-            line: error.line(),
-            column: error.column(),
-            cause: error.to_string(),
+            line,
+            column,
+            cause: cause.strip_suffix(&place).unwrap_or(&cause).to_owned(),
         }
     })
 }

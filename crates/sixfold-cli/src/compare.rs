@@ -12,7 +12,9 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold_report::{Compared, PaperFile, ReportPage};
-use sixfold_results::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
+use sixfold_results::{
+    Change, Changes, CompareSettings, Measurement, MeasurementPart, Verdict, compare,
+};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;
@@ -145,6 +147,8 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
         ("second", &changes.only_after),
     ] {
         if !only.is_empty() {
+            let parts = Measurement::differing_parts(only.iter());
+            let name = |measurement| name(measurement, &parts);
             let mut names: Vec<String> = only.iter().take(SHOWN).map(name).collect();
             if only.len() > SHOWN {
                 names.push(format!("and {} more", grouped(only.len() - SHOWN)));
@@ -155,10 +159,16 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
     }
 }
 
-/// Returns the name of a measurement, such as `build on half-edge`. The mesh and the case are not
-/// part of the name.
-fn name(measurement: &Measurement) -> String {
-    format!("{} on {}", measurement.operation, measurement.backend)
+/// Returns the name of a measurement, such as `build on half-edge (orders, morton)`. Of its mesh, command
+/// and case, it has those in `parts`.
+fn name(measurement: &Measurement, parts: &[MeasurementPart]) -> String {
+    let name = format!("{} on {}", measurement.operation, measurement.backend);
+    let parts = parts.iter().map(|(_, of)| of(measurement));
+    let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+    match parts[..] {
+        [] => name,
+        _ => format!("{name} ({})", parts.join(", ")),
+    }
 }
 
 fn changes_table(rows: &[&Change]) -> String {

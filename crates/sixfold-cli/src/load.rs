@@ -224,7 +224,7 @@ pub(crate) fn results_path(place: &Path) -> PathBuf {
 /// Reads results from a file or from the folder of a report.
 pub(crate) fn read_results(place: &Path) -> Result<Results, Failure> {
     let path = results_path(place);
-    let file = path.display();
+    let file = shown(&path);
     let text = fs::read_to_string(&path).map_err(|cause| {
         Failure::usage(format!(
             "{file}: cannot be read ({cause}): name a file from --json, or a folder from --report"

@@ -59,7 +59,10 @@ pub(crate) fn read_mesh_at(
 pub(crate) fn shown(path: &Path) -> String {
     match is_stdout(path) {
         true => "standard input".to_owned(),
-        false => path.display().to_string(),
+        false => match path.to_str() {
+            Some(path) => path.to_owned(),
+            None => format!("{path:?}").trim_matches('"').to_owned(),
+        },
     }
 }
 

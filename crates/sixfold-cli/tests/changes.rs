@@ -171,6 +171,21 @@ fn results_of_any_command_are_merged_and_compared() {
         left_out.contains("Only in the first file: structure on polygon-soup, "),
         "{left_out}"
     );
+    let quick = [
+        "--operations",
+        "ff_bfs",
+        "--rounds",
+        "2",
+        "--json",
+        "o.json",
+    ];
+    run_ok(&sixfold, &[&["orders", "t.obj"], &quick[..]].concat());
+    run_ok(
+        &sixfold,
+        &["merge", "p.json", "o.json", "--json", "both.json"],
+    );
+    let cases = run_ok(&sixfold, &["compare", "both.json", "p.json"]).stdout;
+    assert!(cases.contains("(breadth-first)"), "{cases}");
     assert!(left_out.contains("more."), "{left_out}");
 }
 

@@ -125,6 +125,26 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_name_that_is_not_utf8_is_one_mesh() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let sixfold = Sixfold::new();
+    let name = std::ffi::OsStr::from_bytes(b"b\xff.obj");
+    fs::create_dir(sixfold.folder().join("scans")).expect("a folder");
+    if fs::write(sixfold.folder().join("scans").join(name), TETRAHEDRON).is_err() {
+        return; // a file system that has only names in UTF-8
+    }
+    let first = study(&sixfold, &["--report", "out"]);
+    assert_eq!(first.code, Some(0), "{first:?}");
+    let before = results(&sixfold, "out");
+    assert_eq!(names(&studies(&before)), ["scans/b\\xFF.obj"]);
+    let again = study(&sixfold, &["--report", "out", "--resume"]);
+    assert_eq!(again.code, Some(0), "{again:?}");
+    assert!(!again.stderr.contains("xFF.obj, 4 faces"), "{again:?}");
+    assert_eq!(results(&sixfold, "out"), before);
+}
+
 #[test]
 fn finished_studies_are_not_repeated() {
     let sixfold = scans();

@@ -155,3 +155,106 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
         limit: usize,
     },
 }
+
+impl<V: Debug, E: Debug, F: Debug> EditError<V, E, F> {
+    /// Returns the refusal with other handles, such as names of the elements.
+    pub fn map_handles<V2: Debug, E2: Debug, F2: Debug>(
+        self,
+        of_vertex: impl Fn(V) -> V2,
+        of_edge: impl Fn(E) -> E2,
+        of_face: impl Fn(F) -> F2,
+    ) -> EditError<V2, E2, F2> {
+        use EditError::*;
+        match self {
+            Unsupported { structure, edit } => Unsupported { structure, edit },
+            NoSuchVertex { vertex } => NoSuchVertex {
+                vertex: of_vertex(vertex),
+            },
+            NoSuchEdge { edge } => NoSuchEdge {
+                edge: of_edge(edge),
+            },
+            NoSuchFace { face } => NoSuchFace {
+                face: of_face(face),
+            },
+            Occupied { vertex } => Occupied {
+                vertex: of_vertex(vertex),
+            },
+            TooFewCorners { corners } => TooFewCorners { corners },
+            OnlyTriangles { corners } => OnlyTriangles { corners },
+            RepeatedVertex { vertex } => RepeatedVertex {
+                vertex: of_vertex(vertex),
+            },
+            NotATriangle { face, degree } => NotATriangle {
+                face: of_face(face),
+                degree,
+            },
+            RepeatedSide { from, to, face } => RepeatedSide {
+                from: of_vertex(from),
+                to: of_vertex(to),
+                face: of_face(face),
+            },
+            FullEdge { edge } => FullEdge {
+                edge: of_edge(edge),
+            },
+            SeveralFans { vertex } => SeveralFans {
+                vertex: of_vertex(vertex),
+            },
+            EdgeExists { ends } => EdgeExists {
+                ends: ends.map(&of_vertex),
+            },
+            NotTwoFaces { edge, faces } => NotTwoFaces {
+                edge: of_edge(edge),
+                faces,
+            },
+            SameDirection { edge } => SameDirection {
+                edge: of_edge(edge),
+            },
+            SameApex { edge, vertex } => SameApex {
+                edge: of_edge(edge),
+                vertex: of_vertex(vertex),
+            },
+            LowValence { vertex } => LowValence {
+                vertex: of_vertex(vertex),
+            },
+            NotAnEnd { edge, vertex } => NotAnEnd {
+                edge: of_edge(edge),
+                vertex: of_vertex(vertex),
+            },
+            NotACorner { face, vertex } => NotACorner {
+                face: of_face(face),
+                vertex: of_vertex(vertex),
+            },
+            AdjacentCorners { face, ends } => AdjacentCorners {
+                face: of_face(face),
+                ends: ends.map(&of_vertex),
+            },
+            LastFace { vertex } => LastFace {
+                vertex: of_vertex(vertex),
+            },
+            CommonNeighbour { edge, vertex } => CommonNeighbour {
+                edge: of_edge(edge),
+                vertex: of_vertex(vertex),
+            },
+            AcrossBoundary { edge } => AcrossBoundary {
+                edge: of_edge(edge),
+            },
+            Pillow { edge } => Pillow {
+                edge: of_edge(edge),
+            },
+            NoFan { vertex } => NoFan {
+                vertex: of_vertex(vertex),
+            },
+            NotANeighbour { vertex, side } => NotANeighbour {
+                vertex: of_vertex(vertex),
+                side: of_vertex(side),
+            },
+            BadNeighbours { vertex } => BadNeighbours {
+                vertex: of_vertex(vertex),
+            },
+            NotOnBoundary { vertex } => NotOnBoundary {
+                vertex: of_vertex(vertex),
+            },
+            TooMany { elements, limit } => TooMany { elements, limit },
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use sixfold_results::numbers::{figure as shown, rounded_down};
+use sixfold_results::numbers::{counted, figure as shown, rounded_down};
 use sixfold_results::{OperationInfo, Pool, Pooled, Report, ResultRow, Results};
 
 use crate::figures::facts;
@@ -149,7 +149,10 @@ fn means(pool: &Pool) -> RatioTable {
     let meshes = pool.groups.first().map_or(0, |all| all.meshes.len());
     RatioTable {
         label: "means".into(),
-        caption: format!("Means over {meshes} meshes. {READING_MEANS}"),
+        caption: format!(
+            "Means over {}. {READING_MEANS}",
+            counted(meshes, "mesh", "meshes")
+        ),
         rows: with_cells(
             pool.all()
                 .chunk_by(|a, b| a.operation == b.operation)

@@ -1,5 +1,6 @@
 //! Arguments of the commands that show how structures work.
 
+use std::ffi::OsString;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -105,7 +106,7 @@ Exit codes: 0 success, also if an edit is refused; 1 a walk has no answer, or ot
 pub(crate) struct Trace {
     /// The mesh (- for standard input; without it, a cube), the relation, and the element
     #[arg(value_name = "[MESH] RELATION ELEMENT", num_args = 0..=3)]
-    pub(crate) query: Vec<String>,
+    pub(crate) query: Vec<OsString>,
     /// Run this edit first; without a query or a walk, show what it does
     #[arg(long, value_name = "EDIT")]
     pub(crate) edit: Vec<String>,

@@ -87,7 +87,7 @@ pub(crate) fn find_meshes(
                 for path in files {
                     if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
                         meshes.push(Mesh {
-                            name: name_of(&path),
+                            name: shown(&path),
                             path: Some(path),
                             problem: None,
                         });
@@ -95,7 +95,7 @@ pub(crate) fn find_meshes(
                 }
             }
             Err(problem) => meshes.push(Mesh {
-                name: name_of(place),
+                name: shown(place),
                 path: None,
                 problem: Some(problem),
             }),
@@ -183,15 +183,6 @@ impl Found {
             text += &format!("; convert {} to OBJ or PLY", convertible.join(" and "));
         }
         text
-    }
-}
-
-/// Returns a path as text; `standard input` for `-`. Bytes that are not UTF-8 are escaped, so that
-/// different paths have different names.
-fn name_of(path: &Path) -> String {
-    match path.to_str() {
-        Some(_) => shown(path),
-        None => format!("{path:?}"),
     }
 }
 

@@ -3,6 +3,7 @@
 mod edits;
 mod walks;
 
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -106,10 +107,11 @@ fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Fai
 /// Traces a query.
 fn queries(
     path: Option<&Path>,
-    [relation, element]: [&String; 2],
+    query: [&OsString; 2],
     arguments: &arguments::Trace,
 ) -> Result<ExitCode, Failure> {
-    let relation = arguments::relation(relation).map_err(Failure::usage)?;
+    let [relation, element] = query.map(|word| word.to_string_lossy());
+    let relation = arguments::relation(&relation).map_err(Failure::usage)?;
     let element: ElementName = element.parse().map_err(Failure::usage)?;
     let mut begun = begin(path, arguments)?;
     let name = begun.name_after_edits();
@@ -137,7 +139,7 @@ fn block(mesh: &str, trace: &Trace) -> String {
     let parts = [
         hanging_indent("", &headline(mesh, trace)),
         algorithm(&trace.algorithm, None),
-        steps(&trace.steps),
+        steps(&trace.steps, &trace.moved),
     ];
     parts
         .into_iter()
@@ -183,11 +185,12 @@ fn algorithm(lines: &[impl Display], current: Option<usize>) -> String {
 /// Maximum number of steps that are printed.
 const MOST_STEPS: usize = 200;
 
-/// Returns the steps as a table. Its last column is broken into lines.
-fn steps(steps: &[Step]) -> String {
+/// Returns the steps as a table. Its last column is broken into lines. A row that an edit moved has also the
+/// name of its element, as in f9 = f8.
+fn steps(steps: &[Step], moved: &[[String; 2]]) -> String {
     const HEADS: [&str; 4] = ["line", "reads", "because", "finds"];
     let shown = &steps[..steps.len().min(MOST_STEPS)];
-    let cells: Vec<[String; 4]> = shown.iter().map(cells).collect();
+    let cells: Vec<[String; 4]> = shown.iter().map(|step| cells(step, moved)).collect();
     let width = |i: usize| {
         let widths = cells.iter().map(|cells| cells[i].chars().count());
         widths.max().unwrap_or(0).max(HEADS[i].len())
@@ -212,15 +215,18 @@ fn steps(steps: &[Step]) -> String {
 }
 
 /// Returns the line, what is read, why, and what is found.
-fn cells(step: &Step) -> [String; 4] {
+fn cells(step: &Step, moved: &[[String; 2]]) -> [String; 4] {
     let number =
         |line: &Option<usize>| line.map_or_else(String::new, |line| (line + 1).to_string());
     match step {
         Step::Read(read) => [
             number(&read.line),
-            format!("{} {}", read.table, rows(&read.row, read.rows)),
-            read.reason.text.clone(),
-            fields(read),
+            with_names(
+                &format!("{} {}", read.table, rows(&read.row, read.rows)),
+                moved,
+            ),
+            with_names(&read.reason.text, moved),
+            with_names(&fields(read), moved),
         ],
         Step::Yield { result, line } => [
             number(line),
@@ -229,6 +235,19 @@ fn cells(step: &Step) -> [String; 4] {
             String::new(),
         ],
     }
+}
+
+/// Returns a text in which the name of the element follows each row that an edit moved.
+fn with_names(text: &str, moved: &[[String; 2]]) -> String {
+    let words = text.split_inclusive(|c: char| !c.is_alphanumeric());
+    let named = words.map(|word| {
+        let row = word.trim_end_matches(|c: char| !c.is_alphanumeric());
+        match moved.iter().find(|[at, _]| at == row) {
+            Some([_, name]) => format!("{row} = {name}{}", &word[row.len()..]),
+            None => word.to_owned(),
+        }
+    });
+    named.collect()
 }
 
 /// Returns the letter and the number of a row.
@@ -293,7 +312,7 @@ fn step(mesh: &str, traces: &[Trace]) -> Result<(), Failure> {
             let parts = [
                 headline(mesh, trace),
                 algorithm(&trace.algorithm, current),
-                steps(&trace.steps[..count]),
+                steps(&trace.steps[..count], &trace.moved),
                 format!(
                     "step {count} of {}: space next, b back, n next structure, q quit",
                     trace.steps.len()

@@ -151,7 +151,11 @@ impl Situation {
     }
 
     fn of_trace(trace: &Trace, folder: &Path) -> Option<Self> {
-        let words: Vec<&str> = trace.query.iter().map(String::as_str).collect();
+        let words: Vec<&str> = trace
+            .query
+            .iter()
+            .filter_map(|word| word.to_str())
+            .collect();
         let (mesh, query) = match words[..] {
             [] => (None, None),
             [mesh] => (Some(mesh), None),

@@ -106,6 +106,14 @@ fn block(mesh: &str, trace: &EditTrace) -> String {
             "moved to other rows: ",
             trace.renamed.iter().map(renamed).collect(),
         ),
+        (
+            "elements of these rows: ",
+            trace
+                .moved
+                .iter()
+                .map(|[row, name]| format!("{row} = {name}"))
+                .collect(),
+        ),
     ];
     for (title, items) in lists {
         if !items.is_empty() {

@@ -69,7 +69,7 @@ fn block(mesh: &str, walk: &Walk) -> String {
     let mut parts = vec![
         hanging_indent("", &head),
         algorithm(&walk.algorithm, None),
-        steps(&walk.steps),
+        steps(&walk.steps, &walk.moved),
     ];
     if let Some(reason) = &walk.stopped {
         parts.push(hanging_indent(

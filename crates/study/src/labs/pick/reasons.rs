@@ -39,17 +39,25 @@ pub(crate) fn sentences(report: &PickReport, workload: &Workload) -> Vec<String>
 const NOT_MEASURED: &str = "No backend was measured, because a run would exceed the budget: use a \
                             longer --budget.";
 
-/// Names the form of the structures that `subdivide` refines, if the other operations need the editable
-/// form.
+/// Names the form of the structures that steps of subdivision refine, if the other operations need the
+/// editable form.
 fn refined_form(report: &PickReport, workload: &Workload) -> Option<String> {
     let actions = || workload.mix.iter().map(|part| part.action);
     let edits = report.needs.contains(&Need::Edit) || actions().any(Action::needs_editable_mesh);
-    let subdivides = actions().any(|action| action == Action::Subdivide);
-    (edits && subdivides && report.program.is_none()).then(|| {
-        "`subdivide` refines the compact form of each structure; all other operations run on the \
+    let mut subdivision = actions().filter(|&action| match action {
+        Action::Pass(operation) => operation.subdivides(),
+        action => action == Action::Subdivide,
+    });
+    let first = subdivision
+        .next()
+        .filter(|_| edits && report.program.is_none())?;
+    let names = subdivision.fold(format!("`{first}`"), |names, name| {
+        format!("{names}, `{name}`")
+    });
+    Some(format!(
+        "The compact form of each structure is refined ({names}); all other operations run on the \
          editable form."
-            .into()
-    })
+    ))
 }
 
 /// Returns warnings about noise, few rounds, a busy machine and wrong results.

@@ -310,15 +310,27 @@ fn all_backends_are_ranked_by_their_times_on_machines_of_any_speed() {
 #[test]
 fn a_mix_that_needs_edits_names_the_form_that_is_subdivided() {
     let torus = shapes::triangle_torus(12, 12).expect("a torus");
-    for (needs, named) in [(vec![], false), (vec![Need::Edit], true)] {
+    let built_in = built_in("subdivision").expect("it is built in");
+    let own = "summary = 'own'\noperations = 1\n[mix]\nloop_native = 1\nflip_edge = 1\n";
+    let own = Workload::parse("own", "own.toml", own).expect("a workload");
+    for (workload, needs, named) in [
+        (built_in.clone(), vec![], None),
+        (built_in, vec![Need::Edit], Some("(`subdivide`)")),
+        (own, vec![], Some("(`loop_native`)")),
+    ] {
         let settings = PickSettings {
-            workload: built_in("subdivision").expect("it is built in"),
+            workload,
             needs,
             ..settings(Effort::of_rounds(6))
         };
         let report = quick(&settings, std::slice::from_ref(&torus)).expect("all hold it");
-        let names_it = |sentence: &String| sentence.contains("refines the compact form");
-        assert_eq!(report.sentences.iter().any(names_it), named);
+        let names_it =
+            |sentence: &&String| sentence.contains("compact form of each structure is refined");
+        let sentence = report.sentences.iter().find(names_it);
+        assert_eq!(sentence.is_some(), named.is_some());
+        assert!(
+            sentence.is_none_or(|sentence| named.is_some_and(|named| sentence.contains(named)))
+        );
     }
 }
 

@@ -238,6 +238,46 @@ fn a_flip_shows_what_it_rewrites_and_a_refusal_shows_its_rule() {
 }
 
 #[test]
+fn a_refusal_names_the_same_elements_on_every_structure() {
+    let octahedron = shapes::octahedron();
+    let bisect: EditByName = "bisect_edge v0-v2".parse().expect("an edit");
+    let mut commands = commands(&octahedron);
+    let more = [
+        "split_face f8 v2 v6",
+        "split_face f9 v2 v6",
+        "collapse_edge v2-v6 v0",
+        "flip_edge v4-v6",
+    ];
+    commands.extend(more.map(|text| text.parse().expect(text)));
+    let mut named = 0;
+    // A new face can lie at other elements.
+    for edit in commands
+        .iter()
+        .filter(|edit| !edit.to_string().starts_with("add_face"))
+    {
+        for structure in Structure::all() {
+            let mut mesh = edited(&structure, &octahedron, std::slice::from_ref(&bisect));
+            let Ok(Some(text)) = mesh.apply(edit) else {
+                continue;
+            };
+            // Structures may find different faults first, but only in elements that the edit names.
+            let edit = edit.to_string();
+            let words = text.split([' ', ',', ':', ';']);
+            let names = words.filter(|word| word.ends_with(|c: char| c.is_ascii_digit()));
+            for name in names.filter(|name| name.starts_with(['f', 'e']) || name.contains('-')) {
+                let (name_of, text) = (structure.name(), &text);
+                assert!(
+                    edit.split(' ').any(|word| word == name),
+                    "{name_of}: {edit}: {text}"
+                );
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 50, "{named}");
+}
+
+#[test]
 fn rows_that_are_only_read_are_listed_in_runs() {
     let winged_edge = Structure::find("winged-edge").expect("one of six");
     let flip = &run(&winged_edge, &shapes::octahedron(), &["flip_edge v0-v2"])[0];

@@ -110,6 +110,46 @@ fn walks_of_textbooks_answer_the_relations() {
 }
 
 #[test]
+fn after_an_edit_a_walk_names_the_elements() {
+    let edits = ["bisect_edge v0-v2"].map(|edit| edit.parse().expect("an edit"));
+    let mut moved = 0;
+    for (structure, relation, source) in WALKS {
+        let (letter, names) = match relation.to_string().split('_').next() {
+            Some("vertex") => ('V', (0..7).map(ElementName::Vertex).collect::<Vec<_>>()),
+            Some("face") => ('F', (0..10).map(ElementName::Face).collect()),
+            _ => continue,
+        };
+        let mesh = Structure::find(structure).expect("one of six");
+        let mesh = mesh.build_after(&shapes::octahedron(), &edits);
+        let mesh = mesh.expect("the edge exists");
+        for name in names {
+            let source = source.replace(letter, &name.to_string());
+            let walk = mesh.walk(&source, Some((relation, name))).expect(&source);
+            let verdict = walk.expected.expect("asked for").verdict;
+            assert_eq!(
+                verdict,
+                format!("Right: the walk yields {relation} of {name}.")
+            );
+            for [row, element] in walk.moved {
+                assert_ne!(row, element);
+                moved += 1;
+            }
+        }
+    }
+    assert!(moved > 0, "the edit moves a face");
+    // A row whose element was removed is not the element.
+    let edits = ["remove_vertex v0", "compact"].map(|edit| edit.parse().expect("an edit"));
+    let half_edge = Structure::find("half-edge").expect("one of six");
+    let mesh = half_edge.build_after(&shapes::octahedron(), &edits);
+    let mesh = mesh.expect("the vertex exists");
+    let error = mesh.walk("yield leaving(v0)", None).expect_err("removed");
+    assert!(error.to_string().contains("no vertex v0"), "{error}");
+    let yielded = |source| mesh.walk(source, None).expect("a walk").results;
+    let leaving = yielded("h = leaving(v5); yield origin(h)");
+    assert_eq!(leaving, ["v5"]);
+}
+
+#[test]
 fn a_walk_is_counted_like_a_query() {
     let source = "h = leaving(v3); repeat { t = twin(h); yield origin(t); h = next(t) }";
     let walk = walk("half-edge", source, None).expect("a walk");
