@@ -1,6 +1,6 @@
 //! The items of an index: vertices with their positions, and the triangles of faces.
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonCutter, PolygonMesh, VertexId, row};
 
 use crate::bounds::Bounds;
@@ -10,6 +10,12 @@ use crate::error::SpatialError;
 pub trait Item: Copy + Send + Sync {
     /// Returns the smallest box around the item.
     fn bounds(&self) -> Bounds;
+
+    /// Returns the smallest box around the item along other axes, which are the rows of `axes`.
+    fn bounds_along(&self, axes: &DMat3) -> Bounds;
+
+    /// Returns the vectors along the sides of the item; a point has none.
+    fn sides(&self) -> impl Iterator<Item = DVec3>;
 
     /// Returns whether all coordinates are finite.
     fn is_finite(&self) -> bool;
@@ -31,6 +37,14 @@ impl<V: Copy + Send + Sync> Item for VertexPoint<V> {
             low: self.position,
             high: self.position,
         }
+    }
+
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        Bounds::from_points_along(axes, [self.position])
+    }
+
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        std::iter::empty()
     }
 
     #[inline]
@@ -79,6 +93,15 @@ impl<F: Copy + Send + Sync> Item for FaceTriangle<F> {
             low: a.min(b).min(c),
             high: a.max(b).max(c),
         }
+    }
+
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        Bounds::from_points_along(axes, self.corners)
+    }
+
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        let [a, b, c] = self.corners_f64();
+        [b - a, c - b, a - c].into_iter()
     }
 
     #[inline]

@@ -1,9 +1,11 @@
 //! The outside of each component.
 
-use glam::{DMat3, DVec3};
+use std::ops::ControlFlow;
+
+use glam::{BVec3, DMat3, DVec3, Vec3};
 use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
 use sixfold_spatial::{
-    Bounds, Bvh, FaceTriangle, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
+    Bounds, Bvh, FaceTriangle, Item, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
 };
 
 use super::{Agreement, UndecidedReason};
@@ -258,28 +260,61 @@ fn bounds(polygons: &PolygonMesh, agreement: &Agreement, kinds: &[Kind]) -> Vec<
     bounds
 }
 
-/// Returns which boxes overlap another one, by a sweep along x.
-fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
-    let boxes = bounds.iter().enumerate();
-    let mut sorted: Vec<(usize, Bounds)> = boxes.filter_map(|(i, b)| Some((i, (*b)?))).collect();
-    sorted.sort_by(|(_, a), (_, b)| a.low.x.total_cmp(&b.low.x));
-    let mut found = vec![false; bounds.len()];
-    let mut open: Vec<(usize, Bounds)> = Vec::new();
-    for (i, one) in sorted {
-        open.retain(|(_, other)| other.high.x >= one.low.x);
-        for &(j, other) in &open {
-            if overlap(&one, &other) {
-                found[i] = true;
-                found[j] = true;
-            }
-        }
-        open.push((i, one));
-    }
-    found
+/// The box of a component.
+#[derive(Clone, Copy)]
+struct ComponentBox {
+    component: usize,
+    bounds: Bounds,
 }
 
-fn overlap(a: &Bounds, b: &Bounds) -> bool {
-    a.low.cmple(b.high).all() && b.low.cmple(a.high).all()
+impl Item for ComponentBox {
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        let Bounds { low, high } = self.bounds;
+        let corner = |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
+        Bounds::from_points_along(axes, (0..8).map(corner))
+    }
+
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        std::iter::empty()
+    }
+
+    fn is_finite(&self) -> bool {
+        self.bounds.low.is_finite() && self.bounds.high.is_finite()
+    }
+}
+
+/// Returns which boxes overlap another one.
+fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
+    let mut found = vec![false; bounds.len()];
+    let boxes = bounds
+        .iter()
+        .enumerate()
+        .filter_map(|(component, &bounds)| {
+            let bounds = bounds?;
+            Some(ComponentBox { component, bounds })
+        });
+    let Ok(index) = Bvh::build(boxes.collect()) else {
+        return found;
+    };
+    for one in index.items() {
+        if found[one.component] {
+            continue;
+        }
+        index.visit_meeting(one, |slot| {
+            let other = &index.items()[slot];
+            if other.component == one.component || !other.bounds.meets(&one.bounds) {
+                return ControlFlow::Continue(());
+            }
+            found[one.component] = true;
+            found[other.component] = true;
+            ControlFlow::Break(())
+        });
+    }
+    found
 }
 
 /// Returns an index of the triangles of the chosen components.
@@ -316,24 +351,25 @@ fn contacts(
     let mut pairs = Vec::new();
     for triangle in index.items() {
         let own = agreement.component(triangle.face);
-        if !is_solid(own) {
+        // A component that touches none yet finds those that it touches by its own triangles.
+        if touching[own] || !is_solid(own) {
             continue;
         }
         let corners = triangle.corners_f64();
-        let centre = corners.iter().sum::<DVec3>() / 3.0;
-        let reach = corners.map(|corner| corner.distance_squared(centre));
-        // A little more than the radius, because the distance of a box is rounded.
-        let limit = 1.000_001 * reach.into_iter().fold(0.0, f64::max) + f64::MIN_POSITIVE;
-        index.visit_near(centre, limit, |slot| {
+        index.visit_meeting(triangle, |slot| {
             let near = &index.items()[slot];
             let other = agreement.component(near.face);
-            let is_new = own != other && is_solid(other) && !(touching[own] && touching[other]);
-            if is_new && triangles_touch(corners, near.corners_f64()) {
+            if own != other
+                && near.bounds().meets(&triangle.bounds())
+                && is_solid(other)
+                && triangles_touch(corners, near.corners_f64())
+            {
                 touching[own] = true;
                 touching[other] = true;
                 pairs.push((own, other));
+                return ControlFlow::Break(());
             }
-            limit
+            ControlFlow::Continue(())
         });
     }
     pairs
