@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3, Vec3};
 use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonCutter, PolygonMesh, VertexId, row};
 
 use crate::bounds::Bounds;
+use crate::contact::meets_box;
 use crate::error::SpatialError;
 
 /// An element that an index stores: it has a bounding box.
@@ -13,6 +14,13 @@ pub trait Item: Copy + Send + Sync {
 
     /// Returns the smallest box around the item along other axes, which are the rows of `axes`.
     fn bounds_along(&self, axes: &DMat3) -> Bounds;
+
+    /// Returns whether the item may have a point in a box along the rows of `axes`; without `axes`, along
+    /// the coordinate axes. Never false if it has one.
+    fn may_meet(&self, axes: Option<&DMat3>, bounds: &Bounds) -> bool {
+        let own = axes.map_or_else(|| self.bounds(), |axes| self.bounds_along(axes));
+        own.meets(bounds)
+    }
 
     /// Returns the vectors along the sides of the item; a point has none.
     fn sides(&self) -> impl Iterator<Item = DVec3>;
@@ -97,6 +105,12 @@ impl<F: Copy + Send + Sync> Item for FaceTriangle<F> {
 
     fn bounds_along(&self, axes: &DMat3) -> Bounds {
         Bounds::from_points_along(axes, self.corners)
+    }
+
+    fn may_meet(&self, axes: Option<&DMat3>, bounds: &Bounds) -> bool {
+        let own = axes.map_or_else(|| self.bounds(), |axes| self.bounds_along(axes));
+        let turned = |corner| axes.map_or(corner, |&axes| axes * corner);
+        own.meets(bounds) && meets_box(self.corners_f64().map(turned), bounds)
     }
 
     fn sides(&self) -> impl Iterator<Item = DVec3> {

@@ -8,7 +8,7 @@ mod node;
 mod octants;
 
 use std::marker::PhantomData;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
@@ -142,17 +142,22 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
 }
 
 impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
-    /// Calls `visit` with the slots of items, of which each whose box meets the box of `item` is one, until
-    /// it breaks.
+    /// Calls `visit` with the slots of items, among them each that has a common point with `item`, until it
+    /// breaks. Nodes all of whose slots are in a range for which `skips` returns true are left out.
     ///
     /// Visits O(log n) nodes, and the items found, for items that are spread evenly.
-    pub fn visit_meeting(&self, item: &I, mut visit: impl FnMut(usize) -> ControlFlow<()>) {
-        let bounds = item.bounds();
-        let mut stack: SmallVec<[Child; 64]> = SmallVec::new();
+    pub fn visit_meeting(
+        &self,
+        item: &I,
+        skips: impl Fn(Range<usize>) -> bool,
+        mut visit: impl FnMut(usize) -> ControlFlow<()>,
+    ) {
+        // A child, and the slot after its last.
+        let mut stack: SmallVec<[(Child, usize); 64]> = SmallVec::new();
         if !self.nodes.is_empty() {
-            stack.push(Child::ROOT);
+            stack.push((Child::ROOT, self.items.len()));
         }
-        while let Some(child) = stack.pop() {
+        while let Some((child, end)) = stack.pop() {
             if let Some(mut slots) = child.slots() {
                 if slots.try_for_each(&mut visit).is_break() {
                     return;
@@ -160,12 +165,26 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
                 continue;
             }
             let node = &self.nodes[child.node()];
-            let bounds = match node.axes() {
-                None => bounds,
-                Some(axes) => item.bounds_along(&self.axes[axes]),
-            };
-            let met = (0..node.children()).filter(|&lane| node.bounds(lane).meets(&bounds));
-            stack.extend(met.map(|lane| node.child(lane)));
+            let axes = node.axes().map(|axes| &self.axes[axes]);
+            let mut end = end;
+            for lane in (0..node.children()).rev() {
+                let child = node.child(lane);
+                let first = self.first_slot(child);
+                let slots = first..std::mem::replace(&mut end, first);
+                if item.may_meet(axes, &node.bounds(lane)) && !skips(slots.clone()) {
+                    stack.push((child, slots.end));
+                }
+            }
+        }
+    }
+
+    /// Returns the first slot below a child.
+    fn first_slot(&self, mut child: Child) -> usize {
+        loop {
+            match child.slots() {
+                Some(slots) => return slots.start,
+                None => child = self.nodes[child.node()].child(0),
+            }
         }
     }
 }

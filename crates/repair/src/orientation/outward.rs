@@ -1,9 +1,9 @@
 //! The outside of each component.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use glam::{BVec3, DMat3, DVec3, Vec3};
-use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId, row};
 use sixfold_spatial::{
     Bounds, Bvh, FaceTriangle, Item, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
 };
@@ -315,7 +315,8 @@ fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
         if found[one.component] {
             continue;
         }
-        index.visit_meeting(one, |slot| {
+        let none = |_| false;
+        index.visit_meeting(one, none, |slot| {
             let other = &index.items()[slot];
             if other.component == one.component || !other.bounds.meets(&one.bounds) {
                 return ControlFlow::Continue(());
@@ -360,6 +361,15 @@ fn contacts(
 ) -> Vec<(usize, usize)> {
     let mut touching = vec![false; agreement.conflicts.len()];
     let mut pairs = Vec::new();
+    // By slot: the end of the slots that follow it and have the same component.
+    let mut ends: Vec<u32> = (1..=row(index.items().len())).collect();
+    for slot in (1..ends.len()).rev() {
+        let [before, here] =
+            [slot - 1, slot].map(|slot| agreement.component(index.items()[slot].face));
+        if before == here {
+            ends[slot - 1] = ends[slot];
+        }
+    }
     for triangle in index.items() {
         let own = agreement.component(triangle.face);
         // A component that touches none yet finds those that it touches by its own triangles.
@@ -367,7 +377,11 @@ fn contacts(
             continue;
         }
         let corners = triangle.corners_f64();
-        index.visit_meeting(triangle, |slot| {
+        let skips = |slots: Range<usize>| {
+            agreement.component(index.items()[slots.start].face) == own
+                && ends[slots.start] as usize >= slots.end
+        };
+        index.visit_meeting(triangle, skips, |slot| {
             let near = &index.items()[slot];
             let other = agreement.component(near.face);
             if own != other
