@@ -1,6 +1,6 @@
 //! The items of an index: vertices with their positions, and the triangles of faces.
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{BVec3, DMat3, DVec3, Vec3};
 use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonCutter, PolygonMesh, VertexId, row};
 
 use crate::bounds::Bounds;
@@ -121,6 +121,36 @@ impl<F: Copy + Send + Sync> Item for FaceTriangle<F> {
     #[inline]
     fn is_finite(&self) -> bool {
         self.corners.iter().all(|corner| corner.is_finite())
+    }
+}
+
+/// A box, such as that of a part of a mesh. `N` is any name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NamedBox<N> {
+    /// The name of what is in the box.
+    pub name: N,
+    /// The box.
+    pub bounds: Bounds,
+}
+
+impl<N: Copy + Send + Sync> Item for NamedBox<N> {
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        let Bounds { low, high } = self.bounds;
+        let corner = |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
+        Bounds::from_points_along(axes, (0..8).map(corner))
+    }
+
+    /// Its sides are along the coordinate axes already.
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        std::iter::empty()
+    }
+
+    fn is_finite(&self) -> bool {
+        self.bounds.low.is_finite() && self.bounds.high.is_finite()
     }
 }
 

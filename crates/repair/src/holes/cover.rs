@@ -1,10 +1,11 @@
 //! Whether patches of holes would lie on the mesh, or on each other.
 
 use std::cell::OnceCell;
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 use sixfold_core::{PolygonMesh, VertexId, row};
-use sixfold_spatial::{Bvh, FaceTriangle, SpatialIndex, polygon_triangles};
+use sixfold_spatial::{Bounds, Bvh, FaceTriangle, NamedBox, SpatialIndex, polygon_triangles};
 
 /// A face lies on a patch within this part of the mean length of the hole's edges.
 const REACH: f64 = 0.005;
@@ -230,8 +231,8 @@ impl<'a> Surface<'a> {
 /// Several patches, by place.
 pub(super) struct Patches<'a> {
     patches: Vec<&'a Patch>,
-    /// The boxes of the patches, as triangles between opposite corners.
-    boxes: Option<Bvh<FaceTriangle<u32>>>,
+    /// The boxes of the patches.
+    boxes: Option<Bvh<NamedBox<usize>>>,
     /// By patch: its pieces in an index, if they were needed.
     pieces: Vec<OnceCell<Pieces>>,
 }
@@ -245,10 +246,12 @@ struct Pieces {
 impl<'a> Patches<'a> {
     /// Sorts patches; O(n log n).
     pub(super) fn new(patches: Vec<&'a Patch>) -> Self {
-        let corner = |p: DVec3| p.as_vec3();
-        let boxes = (0..).zip(&patches).map(|(face, patch)| FaceTriangle {
-            face,
-            corners: [corner(patch.low), corner(patch.high), corner(patch.low)],
+        let boxes = patches.iter().enumerate().map(|(name, patch)| NamedBox {
+            name,
+            bounds: Bounds {
+                low: patch.low.as_vec3(),
+                high: patch.high.as_vec3(),
+            },
         });
         Self {
             boxes: Bvh::build(boxes.collect()).ok(),
@@ -267,10 +270,21 @@ impl<'a> Patches<'a> {
         let patch = self.patches[number];
         let mut near = Vec::new();
         if let Some(boxes) = &self.boxes {
-            let around = [patch.low, patch.high, patch.low];
-            find_near(boxes, around, patch.reach, usize::MAX, &mut near);
-            near.iter_mut()
-                .for_each(|slot| *slot = boxes.items()[*slot].face as usize);
+            let around = NamedBox {
+                name: number,
+                bounds: Bounds {
+                    low: (patch.low - patch.reach).as_vec3().map(f32::next_down),
+                    high: (patch.high + patch.reach).as_vec3().map(f32::next_up),
+                },
+            };
+            let none = |_| false;
+            boxes.visit_meeting(&around, none, |slot| {
+                let other = &boxes.items()[slot];
+                if other.bounds.meets(&around.bounds) {
+                    near.push(other.name);
+                }
+                ControlFlow::Continue(())
+            });
         }
         near.sort_unstable();
         near.retain(|&other| other != number);

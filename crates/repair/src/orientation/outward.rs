@@ -2,10 +2,10 @@
 
 use std::ops::{ControlFlow, Range};
 
-use glam::{BVec3, DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3};
 use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId, row};
 use sixfold_spatial::{
-    Bounds, Bvh, FaceTriangle, Item, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
+    Bounds, Bvh, FaceTriangle, Item, NamedBox, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
 };
 
 use super::{Agreement, UndecidedReason};
@@ -271,33 +271,6 @@ fn bounds(polygons: &PolygonMesh, agreement: &Agreement, kinds: &[Kind]) -> Vec<
     bounds
 }
 
-/// The box of a component.
-#[derive(Clone, Copy)]
-struct ComponentBox {
-    component: usize,
-    bounds: Bounds,
-}
-
-impl Item for ComponentBox {
-    fn bounds(&self) -> Bounds {
-        self.bounds
-    }
-
-    fn bounds_along(&self, axes: &DMat3) -> Bounds {
-        let Bounds { low, high } = self.bounds;
-        let corner = |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
-        Bounds::from_points_along(axes, (0..8).map(corner))
-    }
-
-    fn sides(&self) -> impl Iterator<Item = DVec3> {
-        std::iter::empty()
-    }
-
-    fn is_finite(&self) -> bool {
-        self.bounds.low.is_finite() && self.bounds.high.is_finite()
-    }
-}
-
 /// Returns which boxes overlap another one.
 fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
     let mut found = vec![false; bounds.len()];
@@ -306,23 +279,26 @@ fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
         .enumerate()
         .filter_map(|(component, &bounds)| {
             let bounds = bounds?;
-            Some(ComponentBox { component, bounds })
+            Some(NamedBox {
+                name: component,
+                bounds,
+            })
         });
     let Ok(index) = Bvh::build(boxes.collect()) else {
         return found;
     };
     for one in index.items() {
-        if found[one.component] {
+        if found[one.name] {
             continue;
         }
         let none = |_| false;
         index.visit_meeting(one, none, |slot| {
             let other = &index.items()[slot];
-            if other.component == one.component || !other.bounds.meets(&one.bounds) {
+            if other.name == one.name || !other.bounds.meets(&one.bounds) {
                 return ControlFlow::Continue(());
             }
-            found[one.component] = true;
-            found[other.component] = true;
+            found[one.name] = true;
+            found[other.name] = true;
             ControlFlow::Break(())
         });
     }
