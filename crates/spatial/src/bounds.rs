@@ -53,6 +53,19 @@ impl Bounds {
         }
     }
 
+    /// Returns a box that reaches at least `by` farther at each side.
+    #[inline]
+    #[must_use]
+    pub fn widened(&self, by: f32) -> Self {
+        if by == 0.0 {
+            return *self;
+        }
+        Self {
+            low: (self.low - by).map(f32::next_down),
+            high: (self.high + by).map(f32::next_up),
+        }
+    }
+
     /// Returns whether two boxes have a common point.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {

@@ -142,16 +142,20 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
 }
 
 impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
-    /// Calls `visit` with the slots of items, among them each that has a common point with `item`, until it
-    /// breaks. Nodes all of whose slots are in a range for which `skips` returns true are left out.
+    /// Calls `visit` with the slots of items until it breaks, among them each that has a point within `reach`
+    /// of a point of `shape` along all coordinate axes. Nodes are left out if `skips` returns true for the
+    /// range of their slots.
     ///
     /// Visits O(log n) nodes, and the items found, for items that are spread evenly.
     pub fn visit_meeting(
         &self,
-        item: &I,
+        shape: &impl Item,
+        reach: f32,
         skips: impl Fn(Range<usize>) -> bool,
         mut visit: impl FnMut(usize) -> ControlFlow<()>,
     ) {
+        // Along other axes, points are at most this far apart.
+        let turned = reach * 3_f32.sqrt().next_up();
         // A child, and the slot after its last.
         let mut stack: SmallVec<[(Child, usize); 64]> = SmallVec::new();
         if !self.nodes.is_empty() {
@@ -171,7 +175,13 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
                 let child = node.child(lane);
                 let first = self.first_slot(child);
                 let slots = first..std::mem::replace(&mut end, first);
-                if item.may_meet(axes, &node.bounds(lane)) && !skips(slots.clone()) {
+                if shape.may_meet(
+                    axes,
+                    &node
+                        .bounds(lane)
+                        .widened(if axes.is_some() { turned } else { reach }),
+                ) && !skips(slots.clone())
+                {
                     stack.push((child, slots.end));
                 }
             }

@@ -292,7 +292,7 @@ fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
             continue;
         }
         let none = |_| false;
-        index.visit_meeting(one, none, |slot| {
+        index.visit_meeting(one, 0.0, none, |slot| {
             let other = &index.items()[slot];
             if other.name == one.name || !other.bounds.meets(&one.bounds) {
                 return ControlFlow::Continue(());
@@ -357,7 +357,7 @@ fn contacts(
             agreement.component(index.items()[slots.start].face) == own
                 && ends[slots.start] as usize >= slots.end
         };
-        index.visit_meeting(triangle, skips, |slot| {
+        index.visit_meeting(triangle, 0.0, skips, |slot| {
             let near = &index.items()[slot];
             let other = agreement.component(near.face);
             if own != other
