@@ -230,9 +230,9 @@ impl PolygonCutter {
     ///
     /// # Complexity
     ///
-    /// O(n·(r + log n)) time for a simple polygon with `r` corners that are not convex, and up to O(n²)
-    /// if its triangles are long. Otherwise O(n²), and O(n³) for at most 256 corners that ear clipping
-    /// does not solve.
+    /// O(n log n) time for most polygons of `n` corners: a test of an ear looks only at corners near it. Up
+    /// to O(n²) if very many long triangles cross each other, and O(n³) for at most 256 corners that ear
+    /// clipping does not solve.
     pub fn cut(
         &mut self,
         corners: impl IntoIterator<Item = DVec3>,

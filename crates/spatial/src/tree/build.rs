@@ -99,6 +99,9 @@ struct Part<'a, S> {
     state: S,
 }
 
+/// The parts of a node that is divided by the rule `R`.
+type PartsOf<'a, R> = SmallVec<[Part<'a, <R as sealed::Rule>::State>; 8]>;
+
 /// Appends the node of a part, whose boxes are along the axes with the number `axes`, and all nodes
 /// below it.
 fn push_node<I: Item, R: SplitRule, const W: usize>(
@@ -139,7 +142,7 @@ fn push_node<I: Item, R: SplitRule, const W: usize>(
 /// are the same as on one thread.
 #[cfg(feature = "rayon")]
 fn push_parts_in_parallel<I: Item, R: SplitRule, const W: usize>(
-    parts: SmallVec<[Part<'_, R::State>; 8]>,
+    parts: PartsOf<'_, R>,
     items: &[I],
     at: usize,
     axes: Option<usize>,
@@ -182,7 +185,7 @@ fn push_parts_in_parallel<I: Item, R: SplitRule, const W: usize>(
 fn parts_of<'a, I: Item, R: SplitRule, const W: usize>(
     part: Part<'a, R::State>,
     items: &[I],
-) -> (SmallVec<[Part<'a, R::State>; 8]>, Option<DMat3>) {
+) -> (PartsOf<'a, R>, Option<DMat3>) {
     let Part {
         items: boxed,
         first,

@@ -48,3 +48,46 @@ pub(super) fn has_cut(ears: &mut EarClipping, polygon: &[DVec2], shape: Shape) -
     ears.clip(&flat, &outside, shape, |_, _| false, &mut triangles);
     plane::turned_part(&outside, &triangles) == 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// A closed curve of `n` corners, in polar coordinates.
+    fn curve(n: u32, turns: f64, radius: impl Fn(f64) -> f64) -> Vec<DVec2> {
+        let corner = |i: u32| {
+            let part = f64::from(i) / f64::from(n);
+            radius(part) * DVec2::from_angle(TAU * turns * part)
+        };
+        (0..n).map(corner).collect()
+    }
+
+    fn has_cut(polygon: &[DVec2]) -> bool {
+        let mut ears = EarClipping::default();
+        [Shape::Simple, Shape::Touching]
+            .into_iter()
+            .any(|shape| super::has_cut(&mut ears, polygon, shape))
+    }
+
+    #[test]
+    fn the_outside_of_a_polygon_that_does_not_cross_itself_is_cut() {
+        let circle = curve(200, 1.0, |_| 1.0);
+        let star = curve(200, 1.0, |part| 1.0 + 0.9 * (20.0 * TAU * part).cos());
+        // A ring with a slit: the second circle runs backwards.
+        let inner = curve(100, -1.0, |_| 0.5);
+        let slit = [&circle[..], &[circle[0]], &inner, &[inner[0]]].concat();
+        for polygon in [circle, star, slit] {
+            assert!(has_cut(&polygon));
+        }
+    }
+
+    #[test]
+    fn the_outside_of_a_polygon_that_winds_twice_is_not_cut() {
+        let twice = curve(200, 2.0, |part| 1.0 + part);
+        for polygon in [twice, vec![DVec2::ONE; 5]] {
+            assert!(!has_cut(&polygon));
+        }
+    }
+}

@@ -300,3 +300,87 @@ fn chain_of_row(row: usize, points: &[DVec2], next: &[u32], removed: &[bool]) ->
         ends: [first, last],
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Points with few different coordinates, more than a row of them.
+    fn points() -> impl Strategy<Value = Vec<DVec2>> {
+        let coordinate = prop_oneof![(0..9_i8).prop_map(f64::from), -1.0..9.0];
+        let point = prop::array::uniform2(coordinate).prop_map(DVec2::from_array);
+        prop::collection::vec(point, 3..200)
+    }
+
+    /// Returns for each corner the next one that is not removed.
+    fn next_of(removed: &[bool]) -> Vec<u32> {
+        let n = removed.len();
+        let next = |i: usize| (1..=n).map(|step| (i + step) % n).find(|&j| !removed[j]);
+        (0..n).map(|i| next(i).unwrap_or(i) as u32).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn obstacles_in_a_triangle_are_found_until_they_are_gone(
+            points in points(),
+            triangles in prop::collection::vec(prop::array::uniform3(any::<usize>()), 1..20),
+        ) {
+            let n = points.len();
+            let mut obstacles = Obstacles::default();
+            obstacles.reset(0..n as u32, &points);
+            let mut is_gone = vec![false; n];
+            for numbers in triangles {
+                let [a, b, c] = numbers.map(|i| points[i % n]);
+                let triangle = if orient2d(a, b, c) < 0.0 { [a, c, b] } else { [a, b, c] };
+                let [a, b, c] = triangle;
+                let is_in = |p: DVec2| {
+                    [[a, b], [b, c], [c, a]].iter().all(|&[p0, p1]| orient2d(p0, p1, p) >= 0.0)
+                };
+                let expected = (0..n).any(|i| !is_gone[i] && is_in(points[i]));
+                let found = obstacles.any(triangle, |q| match is_in(points[q as usize]) {
+                    _ if is_gone[q as usize] => Obstacle::Gone,
+                    true => Obstacle::Prevents,
+                    false => Obstacle::Clear,
+                });
+                prop_assert_eq!(found, expected);
+                for i in numbers {
+                    is_gone[i % n] = true;
+                }
+            }
+        }
+
+        #[test]
+        fn the_winding_number_is_that_of_all_remaining_sides(
+            points in points(),
+            removals in prop::collection::vec(any::<usize>(), 0..60),
+            queries in prop::collection::vec(prop::array::uniform2(-1.0..9.0), 1..8),
+        ) {
+            let n = points.len();
+            let mut removed = vec![false; n];
+            let mut next = next_of(&removed);
+            let mut winding = Winding::default();
+            winding.reset(&points, &next, &removed);
+            for removal in removals {
+                let tip = removal % n;
+                if removed[tip] || removed.iter().filter(|&&removed| !removed).count() <= 3 {
+                    continue;
+                }
+                let before = (1..n).map(|step| (tip + n - step) % n).find(|&i| !removed[i]);
+                removed[tip] = true;
+                next = next_of(&removed);
+                for changed in [tip, before.expect("others are left")] {
+                    winding.update(changed, &points, &next, &removed);
+                }
+            }
+            for query in queries {
+                let at = DVec2::from_array(query);
+                let remaining = (0..n).filter(|&i| !removed[i]);
+                let sides = remaining.map(|i| [points[i], points[next[i] as usize]]);
+                let expected: isize = sides.map(|side| crossing(side, at)).sum();
+                prop_assert_eq!(winding.around(at, &points, &next, &removed), expected);
+            }
+        }
+    }
+}
