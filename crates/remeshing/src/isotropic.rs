@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use sixfold_core::MeshEdit;
+use sixfold_core::{MeshEdit, row};
 
 use crate::Stop;
 use crate::error::RemeshError;
@@ -24,6 +24,9 @@ const MIN_STEPS: f64 = 4.0;
 
 /// Maximum movement of a vertex that counts as no movement, as a fraction of the target length.
 const TOLERANCE: f64 = 1e-3;
+
+/// Edges at vertices with more edges than this are collapsed last.
+const HUB: u32 = 64;
 
 /// The options of remeshing. The defaults are at most 10 iterations and at most 10 million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,8 +122,13 @@ pub fn remesh_watched<M: MeshEdit>(
     if !(length.is_finite() && length > 0.0) {
         return Err(RemeshError::BadLength { length });
     }
+    let numbering = Numbering::new(mesh)?;
+    let numbers = 0..row(numbering.len());
     let mut work = Work {
-        numbering: Numbering::new(mesh)?,
+        is_boundary: numbers
+            .map(|n| is_boundary(mesh, numbering.handle(n)))
+            .collect(),
+        numbering,
         long: (LONG * length) * (LONG * length),
         short: (SHORT * length) * (SHORT * length),
     };
@@ -201,6 +209,8 @@ fn check_precision<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
+    /// By number: whether the vertex is on the boundary. No edit makes an inner vertex a boundary vertex.
+    is_boundary: Vec<bool>,
     /// Squared length above which an edge is split.
     long: f64,
     short: f64,
@@ -243,6 +253,7 @@ impl<M: MeshEdit> Work<M> {
                 continue;
             };
             let number = self.numbering.push(m);
+            self.is_boundary.push(is_boundary(mesh, m));
             splits += 1;
             let mut spokes: Vec<[u32; 2]> = mesh
                 .vertex_vertices(m)
@@ -259,7 +270,12 @@ impl<M: MeshEdit> Work<M> {
     /// collapses.
     fn collapse_short(&mut self, mesh: &mut M) -> usize {
         let mut collapses = 0;
-        for ends in self.numbering.edges(mesh) {
+        let valences = self.numbering.valences(mesh);
+        let is_at_hub = |ends: &[u32; 2]| ends.iter().any(|&n| valences[n as usize] > HUB);
+        let mut edges = self.numbering.edges(mesh);
+        // Collapses around a hub lower its valence first. Each one at the hub visits all of its edges.
+        edges.sort_by_key(is_at_hub);
+        for ends in edges {
             let Some(e) = self.numbering.edge(mesh, ends) else {
                 continue;
             };
@@ -285,6 +301,8 @@ impl<M: MeshEdit> Work<M> {
             if let Ok(kept) = mesh.collapse_edge(e, self.numbering.handle(keep), place) {
                 self.numbering.set_handle(keep, kept);
                 let [a, b] = ends;
+                self.is_boundary[keep as usize] =
+                    ends.iter().any(|&n| self.is_boundary[n as usize]);
                 self.numbering.remove(if keep == a { b } else { a });
                 collapses += 1;
             }
@@ -296,8 +314,7 @@ impl<M: MeshEdit> Work<M> {
     /// its shape.
     fn collapse_target(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
         let [p, q] = self.ends(mesh, ends);
-        let handles = ends.map(|n| self.numbering.handle(n));
-        match handles.map(|v| is_boundary(mesh, v)) {
+        match ends.map(|n| self.is_boundary[n as usize]) {
             [false, false] => Some((ends[0], (p + q) / 2.0)),
             [true, false] => Some((ends[0], p)),
             [false, true] => Some((ends[1], q)),
@@ -332,6 +349,7 @@ impl<M: MeshEdit> Work<M> {
     /// Flips edges if this improves the valences. Returns the number of flips.
     fn equalize_valences(&mut self, mesh: &mut M) -> usize {
         let mut flips = 0;
+        let mut valences = self.numbering.valences(mesh);
         for ends in self.numbering.edges(mesh) {
             let Some(e) = self.numbering.edge(mesh, ends) else {
                 continue;
@@ -346,17 +364,21 @@ impl<M: MeshEdit> Work<M> {
                 continue;
             };
             let [a, b] = handles;
-            let excess = |v: M::Vertex| {
-                let regular = if is_boundary(mesh, v) { 4 } else { 6 };
-                mesh.vertex_edges(v).count() as i64 - regular
+            let numbers = [a, b, c, d].map(|v| self.numbering.number(v) as usize);
+            let excess = |n: usize| {
+                let regular = if self.is_boundary[n] { 4 } else { 6 };
+                i64::from(valences[n]) - regular
             };
-            let [va, vb, vc, vd] = [a, b, c, d].map(excess);
+            let [va, vb, vc, vd] = numbers.map(excess);
             let before = va.pow(2) + vb.pow(2) + vc.pow(2) + vd.pow(2);
             let after = (va - 1).pow(2) + (vb - 1).pow(2) + (vc + 1).pow(2) + (vd + 1).pow(2);
             if after < before
                 && flip_keeps_orientation(mesh, [a, b, c, d], e)
                 && mesh.flip_edge(e).is_ok()
             {
+                for (n, change) in numbers.into_iter().zip([-1, -1, 1, 1]) {
+                    valences[n] = valences[n].saturating_add_signed(change);
+                }
                 flips += 1;
             }
         }
@@ -370,7 +392,7 @@ impl<M: MeshEdit> Work<M> {
         vertices.sort_unstable();
         for number in vertices.into_iter().filter(|&n| n != u32::MAX) {
             let v = self.numbering.handle(number);
-            if is_boundary(mesh, v) {
+            if self.is_boundary[number as usize] {
                 continue;
             }
             let from = at(mesh, v);

@@ -4,6 +4,9 @@ use sixfold_core::{HandleMap, MeshEdit, Point, VertexId, VertexMap, row};
 
 use crate::error::RemeshError;
 
+/// A vertex with more edges than this may have very many.
+const FEW_EDGES: usize = 16;
+
 /// The numbers of the vertices, which are updated after every edit.
 ///
 /// Structures list vertices in different orders, but all structures use the same numbers. Vertices
@@ -128,7 +131,38 @@ impl<M: MeshEdit> Numbering<M> {
         if self.removed[a as usize] || self.removed[b as usize] {
             return None;
         }
-        mesh.edge_between(self.handle(a), self.handle(b))
+        let ends = [a, b].map(|number| self.handle(number));
+        let joins = |&e: &M::Edge| mesh.edge_vertices(e).contains(&ends[1]);
+        let mut at_a = mesh.vertex_edges(ends[0]);
+        for _ in 0..FEW_EDGES {
+            let e = at_a.next()?;
+            if joins(&e) {
+                return Some(e);
+            }
+        }
+        // One of the ends may have very many edges, so this looks around both by turns.
+        let is_back = |&e: &M::Edge| mesh.edge_vertices(e).contains(&ends[0]);
+        let mut at_b = mesh.vertex_edges(ends[1]);
+        loop {
+            let (one, other) = (at_a.next()?, at_b.next()?);
+            if joins(&one) {
+                return Some(one);
+            }
+            if is_back(&other) {
+                return Some(other);
+            }
+        }
+    }
+
+    /// Returns the number of edges of each vertex, by number; 0 for a removed one. O(vertices), plus the
+    /// cost of the query VE.
+    pub(crate) fn valences(&self, mesh: &M) -> Vec<u32> {
+        let numbers = (0..row(self.len())).zip(&self.removed);
+        let valence = |(number, &is_removed): (u32, &bool)| match is_removed {
+            true => 0,
+            false => row(mesh.vertex_edges(self.handle(number)).count()),
+        };
+        numbers.map(valence).collect()
     }
 }
 

@@ -1,6 +1,9 @@
 //! Axis-aligned boxes.
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
+
+/// More than the rounding errors of a rotation, relative to the coordinates.
+const ROTATION_ERROR: f64 = 1e-14;
 
 /// An axis-aligned box from `low` to `high`, both included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +29,20 @@ impl Bounds {
         })
     }
 
+    /// Returns a box around `points` along other axes, which are the rows of `axes`: the smallest, and a
+    /// little more than its rounding errors.
+    pub fn from_points_along(axes: &DMat3, points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |bounds, point| {
+            let point = point.as_dvec3();
+            let error = ROTATION_ERROR * point.abs().max_element();
+            let along = *axes * point;
+            bounds.union(Self {
+                low: (along - error).as_vec3().map(f32::next_down),
+                high: (along + error).as_vec3().map(f32::next_up),
+            })
+        })
+    }
+
     /// Returns the smallest box around `self` and `other`.
     #[inline]
     #[must_use]
@@ -34,6 +51,25 @@ impl Bounds {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
         }
+    }
+
+    /// Returns a box that reaches at least `by` farther at each side.
+    #[inline]
+    #[must_use]
+    pub fn widened(&self, by: f32) -> Self {
+        if by == 0.0 {
+            return *self;
+        }
+        Self {
+            low: (self.low - by).map(f32::next_down),
+            high: (self.high + by).map(f32::next_up),
+        }
+    }
+
+    /// Returns whether two boxes have a common point.
+    #[inline]
+    pub fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
     }
 
     /// Returns the middle of the box, rounded to single precision.

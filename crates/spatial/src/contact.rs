@@ -3,6 +3,8 @@
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use robust::{Coord, Coord3D};
 
+use crate::bounds::Bounds;
+
 /// Returns whether two triangles have a common point. Sides and corners belong to a triangle. The
 /// result is exact, unless products of three coordinates overflow. A triangle without area touches
 /// nothing.
@@ -27,6 +29,31 @@ pub fn triangles_touch(a: [DVec3; 3], b: [DVec3; 3]) -> bool {
         (0..3).any(|i| segment_touches([from[i], from[(i + 1) % 3]], to))
     };
     meets(a, b) || meets(b, a)
+}
+
+/// Returns whether a triangle may have a point in a box: false only if the plane of the triangle, or a plane
+/// along a side of it and along an axis, separates them (Akenine-Möller 2001). Planes across the axes are
+/// not tested.
+pub(crate) fn meets_box(corners: [DVec3; 3], bounds: &Bounds) -> bool {
+    let [low, high] = [bounds.low.as_dvec3(), bounds.high.as_dvec3()];
+    let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let corners = corners.map(|corner| corner - centre);
+    let size = corners
+        .iter()
+        .fold(half, |size, corner| size.max(corner.abs()))
+        .max_element();
+    let separates = |normal: DVec3| {
+        let along = corners.map(|corner| normal.dot(corner));
+        let least = along.into_iter().fold(f64::INFINITY, f64::min);
+        let most = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        // More than the rounding errors.
+        let reach = normal.abs().dot(half + 1e-12 * size);
+        least > reach || most < -reach
+    };
+    let [a, b, c] = corners;
+    let sides = [b - a, c - b, a - c];
+    let along_sides = |side: DVec3| DVec3::AXES.map(|axis| axis.cross(side));
+    !separates(sides[0].cross(sides[1])) && !sides.into_iter().flat_map(along_sides).any(separates)
 }
 
 fn has_no_area(corners: &[DVec3; 3]) -> bool {
@@ -145,6 +172,41 @@ mod tests {
             // the projections converge slowly.
             prop_assert_eq!(touches, distance < 1e-4, "{}", distance);
         }
+    }
+
+    proptest! {
+        #[test]
+        fn a_box_with_a_point_of_a_triangle_is_met(
+            corners in prop::array::uniform3(point()),
+            weights in prop::array::uniform3(0.0..1.0_f64),
+            ends in prop::array::uniform2(prop::array::uniform3(0.0..1.0_f32)),
+        ) {
+            let sum: f64 = weights.iter().sum();
+            prop_assume!(sum > 0.0);
+            let parts = corners.iter().zip(weights);
+            let inside = parts.map(|(&corner, weight)| corner * (weight / sum)).sum::<DVec3>().as_vec3();
+            let [below, above] = ends.map(glam::Vec3::from_array);
+            let bounds = Bounds {
+                low: (inside - below).map(f32::next_down),
+                high: (inside + above).map(f32::next_up),
+            };
+            prop_assert!(meets_box(corners, &bounds));
+        }
+    }
+
+    #[test]
+    fn a_box_beside_a_needle_is_not_met() {
+        let needle = [DVec3::ZERO, DVec3::splat(10.0), DVec3::new(0.0, 0.1, 0.0)];
+        let at = |x: f32, y: f32, z: f32| Bounds {
+            low: glam::Vec3::new(x, y, z),
+            high: glam::Vec3::new(x + 1.0, y + 1.0, z + 1.0),
+        };
+        assert!(meets_box(needle, &at(4.0, 4.0, 4.0)));
+        assert!(!meets_box(needle, &at(6.0, 4.0, 4.0)) && !meets_box(needle, &at(0.0, 8.0, 0.0)));
+        let triangle = [DVec3::X, DVec3::Y, DVec3::Z];
+        assert!(
+            !meets_box(triangle, &at(-0.9, -0.9, -0.9)) && meets_box(triangle, &at(0.0, 0.0, 0.0))
+        );
     }
 
     #[test]

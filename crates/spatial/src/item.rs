@@ -1,15 +1,29 @@
 //! The items of an index: vertices with their positions, and the triangles of faces.
 
-use glam::{DVec3, Vec3};
+use glam::{BVec3, DMat3, DVec3, Vec3};
 use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonCutter, PolygonMesh, VertexId, row};
 
 use crate::bounds::Bounds;
+use crate::contact::meets_box;
 use crate::error::SpatialError;
 
 /// An element that an index stores: it has a bounding box.
 pub trait Item: Copy + Send + Sync {
     /// Returns the smallest box around the item.
     fn bounds(&self) -> Bounds;
+
+    /// Returns the smallest box around the item along other axes, which are the rows of `axes`.
+    fn bounds_along(&self, axes: &DMat3) -> Bounds;
+
+    /// Returns whether the item may have a point in a box along the rows of `axes`; without `axes`, along
+    /// the coordinate axes. Never false if it has one.
+    fn may_meet(&self, axes: Option<&DMat3>, bounds: &Bounds) -> bool {
+        let own = axes.map_or_else(|| self.bounds(), |axes| self.bounds_along(axes));
+        own.meets(bounds)
+    }
+
+    /// Returns the vectors along the sides of the item; a point has none.
+    fn sides(&self) -> impl Iterator<Item = DVec3>;
 
     /// Returns whether all coordinates are finite.
     fn is_finite(&self) -> bool;
@@ -31,6 +45,14 @@ impl<V: Copy + Send + Sync> Item for VertexPoint<V> {
             low: self.position,
             high: self.position,
         }
+    }
+
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        Bounds::from_points_along(axes, [self.position])
+    }
+
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        std::iter::empty()
     }
 
     #[inline]
@@ -81,9 +103,54 @@ impl<F: Copy + Send + Sync> Item for FaceTriangle<F> {
         }
     }
 
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        Bounds::from_points_along(axes, self.corners)
+    }
+
+    fn may_meet(&self, axes: Option<&DMat3>, bounds: &Bounds) -> bool {
+        let own = axes.map_or_else(|| self.bounds(), |axes| self.bounds_along(axes));
+        let turned = |corner| axes.map_or(corner, |&axes| axes * corner);
+        own.meets(bounds) && meets_box(self.corners_f64().map(turned), bounds)
+    }
+
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        let [a, b, c] = self.corners_f64();
+        [b - a, c - b, a - c].into_iter()
+    }
+
     #[inline]
     fn is_finite(&self) -> bool {
         self.corners.iter().all(|corner| corner.is_finite())
+    }
+}
+
+/// A box, such as that of a part of a mesh. `N` is any name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NamedBox<N> {
+    /// The name of what is in the box.
+    pub name: N,
+    /// The box.
+    pub bounds: Bounds,
+}
+
+impl<N: Copy + Send + Sync> Item for NamedBox<N> {
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    fn bounds_along(&self, axes: &DMat3) -> Bounds {
+        let Bounds { low, high } = self.bounds;
+        let corner = |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
+        Bounds::from_points_along(axes, (0..8).map(corner))
+    }
+
+    /// Its sides are along the coordinate axes already.
+    fn sides(&self) -> impl Iterator<Item = DVec3> {
+        std::iter::empty()
+    }
+
+    fn is_finite(&self) -> bool {
+        self.bounds.low.is_finite() && self.bounds.high.is_finite()
     }
 }
 

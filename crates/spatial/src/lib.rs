@@ -83,7 +83,7 @@ pub use error::{DistanceError, SpatialError};
 pub use grid::UniformGrid;
 pub use index::{ItemList, SpatialIndex};
 pub use item::{
-    FaceTriangle, Item, VertexPoint, face_triangles, polygon_points, polygon_triangles,
+    FaceTriangle, Item, NamedBox, VertexPoint, face_triangles, polygon_points, polygon_triangles,
     vertex_points,
 };
 pub use point_queries::{Neighbour, PointQueries};

@@ -168,6 +168,18 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
     /// corners belong to a face; a ray in the plane of a face does not hit it.
     #[inline]
     fn first_hit(&self, ray: &Ray, limit: f64) -> Option<RayHit<F>> {
+        self.first_hit_where(ray, limit, |_| true)
+    }
+
+    /// Returns the first hit of `ray` up to parameter `limit` on the triangles that `accepts` accepts.
+    /// `accepts` is called only with triangles that are hit at least as early as all accepted before.
+    #[inline]
+    fn first_hit_where(
+        &self,
+        ray: &Ray,
+        limit: f64,
+        mut accepts: impl FnMut(&FaceTriangle<F>) -> bool,
+    ) -> Option<RayHit<F>> {
         let items = self.items();
         let mut limit = scaled_limit(ray, limit)?;
         let mut best: Option<F> = None;
@@ -175,7 +187,7 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
             let triangle = &items[slot];
             if let Some(t) = ray.hit(&triangle.bounds(), triangle) {
                 let in_tie = || t == limit && best.is_none_or(|best| triangle.face < best);
-                if t < limit || in_tie() {
+                if (t < limit || in_tie()) && accepts(triangle) {
                     limit = t;
                     best = Some(triangle.face);
                 }

@@ -43,7 +43,9 @@
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
-use sixfold_core::{Creases, MeshQuery, Point, Refine, Split, map_chunks};
+use rustc_hash::FxHashMap;
+use sixfold_core::glam::DVec3;
+use sixfold_core::{Creases, Handle, MeshQuery, Point, Refine, Split, map_chunks};
 
 use crate::connectivity::vertex_numbers;
 use crate::error::SubdivisionError;
@@ -56,14 +58,18 @@ use crate::step::{Step, StepBuilder};
 /// Number of valences with precomputed weights.
 const PRECOMPUTED: usize = 16;
 
-struct Butterfly {
+/// The largest valence of a vertex whose ring is summed again for each of its edges.
+const SUMMED_AGAIN: usize = 64;
+
+struct Butterfly<V> {
     rings: [Vec<f32>; PRECOMPUTED],
+    /// The extraordinary vertices with more neighbours than [`SUMMED_AGAIN`].
+    hubs: FxHashMap<V, Hub<V>>,
 }
 
 /// Runs one step with queries for each new point.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     manifold::check(mesh, Scheme::Butterfly)?;
-    let scheme = Butterfly::new();
     let mut builder = StepBuilder::new(Split::Triangles, mesh, 3 * mesh.face_count());
     let numbers = vertex_numbers(mesh);
     let mut regular = mesh.vertex_map(false);
@@ -71,6 +77,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
         regular[v] = is_regular(mesh, v);
         builder.points.push(mesh.position(v));
     });
+    let scheme = Butterfly::new(mesh, |v| regular[v]);
     let mut edge_points = mesh.edge_map(0_u32);
     mesh.edges().for_each(|e| {
         edge_points[e] = builder.points.len() as u32;
@@ -91,9 +98,9 @@ pub(crate) fn native<M: Refine>(
         manifold::check(mesh, Scheme::Butterfly)?;
     }
     mesh.split_into(Split::Triangles, numbers, child)?;
-    let scheme = Butterfly::new();
     let mut regular = vec![false; mesh.vertex_count()];
     compute_rows(&mut regular, |v| is_regular(mesh, v));
+    let scheme = Butterfly::new(mesh, |v: M::Vertex| regular[v.index()]);
     let (vertices, points) = child.positions_mut().split_at_mut(mesh.vertex_count());
     copy_rows(vertices, mesh.position_rows());
     map_chunks(points, &mesh.edge_chunks(numbers), |chunk, _, points| {
@@ -116,19 +123,25 @@ fn is_regular<M: MeshQuery>(mesh: &M, v: M::Vertex) -> bool {
     matches!(sizes, (6, 6) | (4, 3))
 }
 
-impl Butterfly {
-    fn new() -> Self {
+impl<V: Handle> Butterfly<V> {
+    /// Collects the weights, and the sums of vertices with many neighbours. O(corners), plus the cost of
+    /// the rings.
+    fn new<M: MeshQuery<Vertex = V>>(mesh: &M, is_regular: impl Fn(V) -> bool) -> Self {
+        let has_many =
+            |&v: &V| !is_regular(v) && mesh.vertex_vertices(v).nth(SUMMED_AGAIN).is_some();
+        let hubs = mesh.vertices().filter(has_many);
         Self {
             rings: std::array::from_fn(ring_weights),
+            hubs: hubs.map(|v| (v, Hub::new(mesh, v))).collect(),
         }
     }
 
     /// Returns the point of edge `e`.
-    fn edge<M: MeshQuery>(
+    fn edge<M: MeshQuery<Vertex = V>>(
         &self,
         mesh: &M,
         e: M::Edge,
-        is_regular: impl Fn(M::Vertex) -> bool,
+        is_regular: impl Fn(V) -> bool,
     ) -> Point {
         let [a, b] = mesh.edge_vertices(e);
         let (mut first, mut second) = (None, None);
@@ -149,8 +162,11 @@ impl Butterfly {
     }
 
     /// Returns the point of the inner edge from `v` to `to`, computed from the neighbours of `v`.
-    /// O(valence) plus the cost of the ring.
-    fn extraordinary_point<M: MeshQuery>(&self, mesh: &M, v: M::Vertex, to: M::Vertex) -> Point {
+    /// O(valence) plus the cost of the ring; O(log valence) for a vertex with many neighbours.
+    fn extraordinary_point<M: MeshQuery<Vertex = V>>(&self, mesh: &M, v: V, to: V) -> Point {
+        if let Some(point) = self.hubs.get(&v).and_then(|hub| hub.point(to)) {
+            return point;
+        }
         let ring = ring(mesh, v);
         let start = ring.iter().position(|&w| w == to).unwrap_or(0);
         let at = mesh.position(v);
@@ -166,6 +182,104 @@ impl Butterfly {
             point + (mesh.position(w) - at) * weight
         })
     }
+}
+
+/// A vertex with many neighbours: the sums over its ring from which the points of all its edges follow.
+///
+/// The weight of neighbour `j` in the point of edge `i` is a sum of products of a function of `i` and a
+/// function of `j`, because of cos(x − y) = cos x cos y + sin x sin y. The sums of the offsets dⱼ of the
+/// neighbours, each multiplied by a function of `j`, are the same for all edges. With θ = 2π/K for K
+/// neighbours around `v`, and θ = π/k for k triangles at a boundary:
+///
+/// ```text
+///   around v       Kp = Σ dⱼ/4 + cos iθ Σ dⱼ cos jθ + sin iθ Σ dⱼ sin jθ
+///                     + (cos 2iθ Σ dⱼ cos 2jθ + sin 2iθ Σ dⱼ sin 2jθ)/2
+///   at a boundary  kp = sin iθ Σ dⱼ sin jθ + (sin 2iθ Σ dⱼ sin 2jθ)/2 + k (d₀ − dₖ) w
+/// ```
+struct Hub<V> {
+    at: Point,
+    /// The neighbours, sorted, with their places in the ring.
+    places: Vec<(V, usize)>,
+    is_open: bool,
+    /// Σ dⱼ, Σ dⱼ cos jθ, Σ dⱼ sin jθ, Σ dⱼ cos 2jθ and Σ dⱼ sin 2jθ. At a boundary, without the first
+    /// and the last neighbour.
+    sums: [DVec3; 5],
+    /// At a boundary, d₀ − dₖ.
+    across: DVec3,
+}
+
+impl<V: Handle> Hub<V> {
+    fn new<M: MeshQuery<Vertex = V>>(mesh: &M, v: V) -> Self {
+        let mut ring = ring(mesh, v);
+        let at = mesh.position(v);
+        let is_open = mesh.vertex_faces(v).count() < ring.len();
+        if !is_open {
+            // Rounding is then the same on every structure.
+            let bits = |&i: &usize| {
+                (mesh.position(ring[i]) + Point::ZERO)
+                    .to_array()
+                    .map(f32::to_bits)
+            };
+            let first = (0..ring.len()).min_by_key(bits).unwrap_or(0);
+            ring.rotate_left(first);
+        }
+        let offset = |w: V| mesh.position(w).as_dvec3() - at.as_dvec3();
+        let last = ring.len() - 1;
+        let mut sums = [DVec3::ZERO; 5];
+        let inner = if is_open { 1..last } else { 0..ring.len() };
+        for (j, waves) in inner.map(|j| (j, waves(j, ring.len(), is_open))) {
+            let offset = offset(ring[j]);
+            for (sum, wave) in sums.iter_mut().zip(waves) {
+                *sum += offset * wave;
+            }
+        }
+        let across = offset(ring[0]) - offset(ring[last]);
+        let mut places: Vec<(V, usize)> = ring.into_iter().zip(0..).collect();
+        places.sort_unstable();
+        Self {
+            at,
+            places,
+            is_open,
+            sums,
+            across,
+        }
+    }
+
+    /// Returns the point of the inner edge to the neighbour `to`. O(log n) for n neighbours.
+    fn point(&self, to: V) -> Option<Point> {
+        let place = self.places.binary_search_by_key(&to, |&(w, _)| w).ok()?;
+        let i = self.places[place].1;
+        let n = self.places.len();
+        let own = waves(i, n, self.is_open);
+        let factors = match self.is_open {
+            false => [0.25, own[1], own[2], 0.5 * own[3], 0.5 * own[4]],
+            true => [0.0, 0.0, own[2], 0.0, 0.5 * own[4]],
+        };
+        let terms = self
+            .sums
+            .iter()
+            .zip(factors)
+            .map(|(&sum, factor)| sum * factor);
+        let offset = match self.is_open {
+            false => terms.sum::<DVec3>() / n as f64,
+            true => {
+                let end = boundary_end(n - 1, i as f64);
+                terms.sum::<DVec3>() / (n - 1) as f64 + self.across * end
+            }
+        };
+        Some((self.at.as_dvec3() + offset).as_vec3())
+    }
+}
+
+/// Returns 1, cos jθ, sin jθ, cos 2jθ and sin 2jθ of a ring of `n` neighbours.
+fn waves(j: usize, n: usize, is_open: bool) -> [f64; 5] {
+    let theta = match is_open {
+        false => TAU / n as f64,
+        true => PI / (n - 1) as f64,
+    };
+    let (sin, cos) = (j as f64 * theta).sin_cos();
+    let (sin2, cos2) = (2.0 * j as f64 * theta).sin_cos();
+    [1.0, cos, sin, cos2, sin2]
 }
 
 /// Returns the neighbours of a vertex with one fan, in order.
@@ -237,9 +351,7 @@ fn ring_weights(valence: usize) -> Vec<f32> {
 fn boundary_weights(triangles: usize, i: usize) -> Vec<f32> {
     let (k, i) = (triangles as f64, i as f64);
     let theta = PI / k;
-    let end = 0.25 * (i * theta).cos()
-        - (2.0 * theta).sin() * (2.0 * i * theta).sin()
-            / (4.0 * k * (theta.cos() - (2.0 * theta).cos()));
+    let end = boundary_end(triangles, i);
     let between = |j: usize| {
         let (i, j) = (i * theta, j as f64 * theta);
         (i.sin() * j.sin() + 0.5 * (2.0 * i).sin() * (2.0 * j).sin()) / k
@@ -247,6 +359,15 @@ fn boundary_weights(triangles: usize, i: usize) -> Vec<f32> {
     let inner = (1..triangles).map(between);
     let all = std::iter::once(end).chain(inner).chain([-end]);
     all.map(|weight| weight as f32).collect()
+}
+
+/// Returns the weight of the first neighbour in [`boundary_weights`]; the last one has its negative.
+fn boundary_end(triangles: usize, i: f64) -> f64 {
+    let k = triangles as f64;
+    let theta = PI / k;
+    0.25 * (i * theta).cos()
+        - (2.0 * theta).sin() * (2.0 * i * theta).sin()
+            / (4.0 * k * (theta.cos() - (2.0 * theta).cos()))
 }
 
 #[cfg(test)]
@@ -298,6 +419,42 @@ mod tests {
                 let (sin, cos) = angle(i).sin_cos();
                 let half = Point::new(cos as f32, sin as f32, 0.0) * 0.5;
                 assert_near(at.sum(), half);
+            }
+        }
+    }
+
+    /// A cone over a circle that is cut open or not, with radii that differ.
+    fn cone(n: u32, is_open: bool) -> PolygonMesh {
+        let rim = (0..n).map(|i| {
+            let (sin, cos) = (f64::from(i) * TAU / f64::from(n)).sin_cos();
+            let size = 1.0 + 0.3 * f64::from(i * i % 7);
+            DVec3::new(size * cos, size * sin, 0.1 * f64::from(i % 5)).as_vec3()
+        });
+        let points: Vec<Point> = rim.chain([Point::new(0.1, 0.2, 1.0)]).collect();
+        let count = if is_open { n - 1 } else { n };
+        let faces = (0..count).map(|i| [i, (i + 1) % n, n]);
+        PolygonMesh::new(points, faces).expect("a cone")
+    }
+
+    #[test]
+    fn sums_of_a_hub_give_the_points_of_its_weights() {
+        for n in [65, 66, 130] {
+            for is_open in [false, true] {
+                let mesh: FaceVertexMesh = build(&cone(n, is_open));
+                let tip = mesh.vertices().last().expect("the tip");
+                let with_hubs = Butterfly::new(&mesh, |_| false);
+                assert_eq!(with_hubs.hubs.len(), 1);
+                let without = Butterfly {
+                    rings: std::array::from_fn(ring_weights),
+                    hubs: FxHashMap::default(),
+                };
+                let inner = mesh.vertex_vertices(tip);
+                for to in inner.filter(|&to| mesh.vertex_faces(to).count() == 2) {
+                    assert_near(
+                        with_hubs.extraordinary_point(&mesh, tip, to),
+                        without.extraordinary_point(&mesh, tip, to),
+                    );
+                }
             }
         }
     }

@@ -3,8 +3,10 @@
 mod conflicts;
 mod ears;
 mod exhaustive;
+mod outside;
 mod overlap;
 mod plane;
+mod regions;
 
 use glam::{DVec2, DVec3};
 
@@ -228,9 +230,9 @@ impl PolygonCutter {
     ///
     /// # Complexity
     ///
-    /// O(n·(r + log n)) time for a simple polygon with `r` corners that are not convex, and up to O(n²)
-    /// if its triangles are long. Otherwise O(n²), and O(n³) for at most 256 corners that ear clipping
-    /// does not solve.
+    /// O(n log n) time for most polygons of `n` corners: a test of an ear looks only at corners near it. Up
+    /// to O(n²) if very many long triangles cross each other, and O(n³) for at most 256 corners that ear
+    /// clipping does not solve.
     pub fn cut(
         &mut self,
         corners: impl IntoIterator<Item = DVec3>,
@@ -324,7 +326,7 @@ impl PolygonCutter {
             return false;
         }
         let mut least = f64::INFINITY;
-        for method in [Method::Simple, Method::Touching, Method::Exhaustive] {
+        for method in [SIMPLE, TOUCHING, Method::Exhaustive] {
             least = self.improve(least, &along_axis, method, &is_edge);
             if least == 0.0 {
                 return false;
@@ -333,7 +335,7 @@ impl PolygonCutter {
         if least > MAX_WRONG
             && let Some(along_normal) = plane::along_normal(&self.corners, normal)
         {
-            for method in [Method::Simple, Method::Touching] {
+            for method in [SIMPLE, TOUCHING] {
                 least = self.improve(least, &along_normal, method, &is_edge);
             }
         }
@@ -357,12 +359,23 @@ impl PolygonCutter {
         } = self;
         tried.clear();
         match method {
-            Method::Simple => ears.clip(corners, projected, Shape::Simple, is_edge, tried),
-            Method::Touching => ears.clip(corners, projected, Shape::Touching, is_edge, tried),
+            Method::Ears(shape) => ears.clip(corners, projected, shape, is_edge, tried),
             Method::Exhaustive if corners.len() > exhaustive::MAX_CORNERS => return least,
             Method::Exhaustive => exhaustive::triangulate(corners, projected, is_edge, tried),
         }
-        let wrong = wrong_part(projected, tried);
+        let turned = plane::turned_part(projected, tried);
+        let wrong = if turned > 0.0 {
+            turned
+        } else if !overlap::may_overlap(projected) || is_proved_simple(ears, projected, method) {
+            0.0
+        } else {
+            let overlapping = overlap::overlapping_part(projected, tried);
+            if overlapping > MAX_WRONG {
+                overlapping
+            } else {
+                0.0
+            }
+        };
         if wrong >= least {
             return least;
         }
@@ -406,31 +419,31 @@ fn without_spikes(face: &[VertexId]) -> Vec<usize> {
 /// A way to cut a polygon.
 #[derive(Clone, Copy)]
 enum Method {
-    /// Ear clipping of a simple polygon.
-    Simple,
-    /// Ear clipping of a polygon that touches itself.
-    Touching,
+    /// Ear clipping of a polygon of this shape.
+    Ears(Shape),
     /// The best of all triangulations.
     Exhaustive,
 }
+
+/// Returns whether the triangles of a large polygon are known not to overlap.
+fn is_proved_simple(ears: &mut EarClipping, projected: &[DVec2], method: Method) -> bool {
+    match method {
+        Method::Ears(_) if projected.len() > MEASURED_CORNERS => [Shape::Simple, Shape::Touching]
+            .into_iter()
+            .any(|shape| outside::has_cut(ears, projected, shape)),
+        _ => false,
+    }
+}
+
+const SIMPLE: Method = Method::Ears(Shape::Simple);
+const TOUCHING: Method = Method::Ears(Shape::Touching);
 
 /// The largest part of the area of the triangles that is turned over, or that overlaps, because of
 /// rounded coordinates, where the polygon touches itself.
 const MAX_WRONG: f64 = 1e-6;
 
-/// Returns the part of the area of the triangles of a polygon that is turned over. If no triangle is
-/// turned over, returns the part that overlaps; 0 if this is at most [`MAX_WRONG`].
-fn wrong_part(projected: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
-    let turned = plane::turned_part(projected, triangles);
-    if turned > 0.0 {
-        return turned;
-    }
-    let overlapping = overlap::overlapping_part(projected, triangles);
-    match overlapping > MAX_WRONG {
-        true => overlapping,
-        false => 0.0,
-    }
-}
+/// The most corners of a polygon whose overlapping triangles are looked for directly.
+const MEASURED_CORNERS: usize = 64;
 
 /// Part by which the second diagonal of a quad must be better than the first. Rounding errors then
 /// do not decide between the diagonals of equal quads.

@@ -1,7 +1,7 @@
 //! Cracks: boundaries that nearly meet.
 
-use rustc_hash::FxHashMap;
-use sixfold_core::{Incidence, Pair, PolygonMesh, VertexId};
+use rustc_hash::{FxHashMap, FxHashSet};
+use sixfold_core::{Incidence, Pair, Point, PolygonMesh, VertexId};
 use sixfold_spatial::{KdTree, PointQueries, SpatialIndex, VertexPoint};
 
 use crate::step::Step;
@@ -212,6 +212,7 @@ struct Boundary<'a> {
     polygons: &'a PolygonMesh,
     /// The vertices that have finite positions, with the length of their shortest boundary edge.
     vertices: Vec<(VertexId, f64)>,
+    /// One vertex at each position.
     tree: KdTree<VertexPoint<VertexId>>,
 }
 
@@ -229,9 +230,13 @@ impl<'a> Boundary<'a> {
         let vertices: Vec<(VertexId, f64)> = lengths
             .filter(|(v, length)| length.is_finite() && polygons.position(*v).is_finite())
             .collect();
-        let points = vertices.iter().map(|&(vertex, _)| VertexPoint {
-            vertex,
-            position: polygons.position(vertex),
+        let mut seen = FxHashSet::default();
+        let points = vertices.iter().filter_map(|&(vertex, _)| {
+            let position = polygons.position(vertex);
+            // Replaces −0 by 0.
+            let place = (position + Point::ZERO).to_array().map(f32::to_bits);
+            seen.insert(place)
+                .then_some(VertexPoint { vertex, position })
         });
         let tree = KdTree::build(points.collect()).expect("finite points, not more than vertices");
         Self {
@@ -246,13 +251,9 @@ impl<'a> Boundary<'a> {
     fn gaps(&self) -> Vec<f64> {
         let gap = |&(v, length): &(VertexId, f64)| {
             let at = self.polygons.position(v);
-            let mut nearest = f64::INFINITY;
-            self.tree.for_each_within(at, NARROW * length, |near| {
-                if self.polygons.position(near.vertex) != at {
-                    nearest = nearest.min(near.distance());
-                }
-            });
-            nearest.is_finite().then_some(nearest)
+            let is_other = |near| self.polygons.position(near) != at;
+            let nearest = self.tree.nearest_where(at, NARROW * length, is_other);
+            nearest.map(|near| near.distance())
         };
         self.vertices.iter().filter_map(gap).collect()
     }

@@ -1,10 +1,11 @@
 //! Whether patches of holes would lie on the mesh, or on each other.
 
 use std::cell::OnceCell;
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 use sixfold_core::{PolygonMesh, VertexId, row};
-use sixfold_spatial::{Bvh, FaceTriangle, SpatialIndex, polygon_triangles};
+use sixfold_spatial::{Bounds, Bvh, FaceTriangle, Item, NamedBox, SpatialIndex, polygon_triangles};
 
 /// A face lies on a patch within this part of the mean length of the hole's edges.
 const REACH: f64 = 0.005;
@@ -137,8 +138,8 @@ impl Patch {
     }
 }
 
-/// Finds the items whose boxes may be within `reach` of the box of a triangle; more than `most`
-/// entries if this is not known, because there are more items around it.
+/// Finds the items whose boxes may be within `reach` of a triangle; more than `most` entries if this is
+/// not known, because there are more items around it.
 fn find_near<F: Copy + Send + Sync>(
     index: &Bvh<FaceTriangle<F>>,
     triangle: [DVec3; 3],
@@ -146,27 +147,22 @@ fn find_near<F: Copy + Send + Sync>(
     most: usize,
     near: &mut Vec<usize>,
 ) {
-    let [a, b, c] = triangle;
-    let centre = (a + b + c) / 3.0;
-    let far = triangle.map(|corner| corner.distance(centre));
-    let radius = far.into_iter().fold(0.0, f64::max) + reach;
-    let limit = radius * radius;
-    let low = a.min(b).min(c) - reach;
-    let high = a.max(b).max(c) + reach;
-    let mut visited = 0;
+    // Corners of parts are rounded.
+    let corners = triangle.map(|corner| corner.as_vec3());
+    let rounded = triangle.map(|corner| corner.abs().max_element());
+    let rounding = rounded.into_iter().fold(0.0, f64::max) * f64::from(f32::EPSILON);
+    let reach = ((reach + rounding) as f32).next_up();
+    let shape = FaceTriangle { face: (), corners };
     near.clear();
-    index.visit_near(centre, limit, |slot| {
-        visited += 1;
-        if visited > most {
-            near.resize(visited, slot);
-            return -1.0;
-        }
-        let [p, q, r] = index.items()[slot].corners.map(|corner| corner.as_dvec3());
-        let is_apart = p.max(q).max(r).cmplt(low).any() || p.min(q).min(r).cmpgt(high).any();
-        if !is_apart {
+    let none = |_| false;
+    index.visit_meeting(&shape, reach, none, |slot| {
+        if shape.may_meet(None, &index.items()[slot].bounds().widened(reach)) {
             near.push(slot);
         }
-        limit
+        match near.len() > most {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     });
 }
 
@@ -230,8 +226,8 @@ impl<'a> Surface<'a> {
 /// Several patches, by place.
 pub(super) struct Patches<'a> {
     patches: Vec<&'a Patch>,
-    /// The boxes of the patches, as triangles between opposite corners.
-    boxes: Option<Bvh<FaceTriangle<u32>>>,
+    /// The boxes of the patches.
+    boxes: Option<Bvh<NamedBox<usize>>>,
     /// By patch: its pieces in an index, if they were needed.
     pieces: Vec<OnceCell<Pieces>>,
 }
@@ -245,10 +241,12 @@ struct Pieces {
 impl<'a> Patches<'a> {
     /// Sorts patches; O(n log n).
     pub(super) fn new(patches: Vec<&'a Patch>) -> Self {
-        let corner = |p: DVec3| p.as_vec3();
-        let boxes = (0..).zip(&patches).map(|(face, patch)| FaceTriangle {
-            face,
-            corners: [corner(patch.low), corner(patch.high), corner(patch.low)],
+        let boxes = patches.iter().enumerate().map(|(name, patch)| NamedBox {
+            name,
+            bounds: Bounds {
+                low: patch.low.as_vec3(),
+                high: patch.high.as_vec3(),
+            },
         });
         Self {
             boxes: Bvh::build(boxes.collect()).ok(),
@@ -267,10 +265,21 @@ impl<'a> Patches<'a> {
         let patch = self.patches[number];
         let mut near = Vec::new();
         if let Some(boxes) = &self.boxes {
-            let around = [patch.low, patch.high, patch.low];
-            find_near(boxes, around, patch.reach, usize::MAX, &mut near);
-            near.iter_mut()
-                .for_each(|slot| *slot = boxes.items()[*slot].face as usize);
+            let around = NamedBox {
+                name: number,
+                bounds: Bounds {
+                    low: (patch.low - patch.reach).as_vec3().map(f32::next_down),
+                    high: (patch.high + patch.reach).as_vec3().map(f32::next_up),
+                },
+            };
+            let none = |_| false;
+            boxes.visit_meeting(&around, 0.0, none, |slot| {
+                let other = &boxes.items()[slot];
+                if other.bounds.meets(&around.bounds) {
+                    near.push(other.name);
+                }
+                ControlFlow::Continue(())
+            });
         }
         near.sort_unstable();
         near.retain(|&other| other != number);

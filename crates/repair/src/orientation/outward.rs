@@ -1,9 +1,11 @@
 //! The outside of each component.
 
+use std::ops::{ControlFlow, Range};
+
 use glam::{DMat3, DVec3};
-use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId, row};
 use sixfold_spatial::{
-    Bounds, Bvh, FaceTriangle, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
+    Bounds, Bvh, FaceTriangle, Item, NamedBox, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
 };
 
 use super::{Agreement, UndecidedReason};
@@ -39,7 +41,9 @@ pub(super) fn outward(
         true => Kind::Open,
         false => Kind::Unclear,
     });
-    let depths = depths(polygons, agreement, first, &kinds.collect::<Vec<Kind>>());
+    let kinds: Vec<Kind> = kinds.collect();
+    let signs: Vec<f64> = volumes.iter().map(|volume| volume.signed).collect();
+    let depths = depths(polygons, agreement, first, &kinds, &signs);
     let sides = volumes.iter().zip(depths).map(|(volume, depth)| {
         match (volume.is_closed, volume.is_clear()) {
             (true, false) => Err(UndecidedReason::NoVolume),
@@ -150,12 +154,13 @@ fn volumes(
 }
 
 /// Returns the number of components around each component, or why it is not known. For components that
-/// are unclear, the number is 0.
+/// are unclear, the number is 0. The signs of `signs` are those of the volumes.
 fn depths(
     polygons: &PolygonMesh,
     agreement: &Agreement,
     first: &[FaceId],
     kinds: &[Kind],
+    signs: &[f64],
 ) -> Vec<Result<usize, UndecidedReason>> {
     let mut depths = vec![Ok(0); first.len()];
     let bounds = bounds(polygons, agreement, kinds);
@@ -184,10 +189,18 @@ fn depths(
     let any_open = (0..kinds.len()).any(|c| is_near[c] && kinds[c] == Kind::Open);
     let directions = if any_open { DIRECTIONS } else { FEW_DIRECTIONS };
     let touching: Vec<bool> = depths.iter().map(Result::is_err).collect();
+    let by_first_hits = match any_open {
+        true => vec![None; first.len()],
+        false => depths_by_first_hits(&index, agreement, &touching, signs),
+    };
     for (inner, sample) in sample.iter().enumerate() {
         let (Some(sample), Ok(_)) = (sample, &depths[inner]) else {
             continue;
         };
+        if let Some(depth) = by_first_hits[inner] {
+            depths[inner] = depth.map_err(|outer| UndecidedReason::Touches(first[outer]));
+            continue;
+        }
         let hiding = hiding(&index, sample, agreement, directions);
         let is_around = |outer: usize| match (bounds[inner], bounds[outer]) {
             (Some(inner), Some(outer)) => outer.union(inner) == outer && inner != outer,
@@ -258,28 +271,38 @@ fn bounds(polygons: &PolygonMesh, agreement: &Agreement, kinds: &[Kind]) -> Vec<
     bounds
 }
 
-/// Returns which boxes overlap another one, by a sweep along x.
+/// Returns which boxes overlap another one.
 fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
-    let boxes = bounds.iter().enumerate();
-    let mut sorted: Vec<(usize, Bounds)> = boxes.filter_map(|(i, b)| Some((i, (*b)?))).collect();
-    sorted.sort_by(|(_, a), (_, b)| a.low.x.total_cmp(&b.low.x));
     let mut found = vec![false; bounds.len()];
-    let mut open: Vec<(usize, Bounds)> = Vec::new();
-    for (i, one) in sorted {
-        open.retain(|(_, other)| other.high.x >= one.low.x);
-        for &(j, other) in &open {
-            if overlap(&one, &other) {
-                found[i] = true;
-                found[j] = true;
-            }
+    let boxes = bounds
+        .iter()
+        .enumerate()
+        .filter_map(|(component, &bounds)| {
+            let bounds = bounds?;
+            Some(NamedBox {
+                name: component,
+                bounds,
+            })
+        });
+    let Ok(index) = Bvh::build(boxes.collect()) else {
+        return found;
+    };
+    for one in index.items() {
+        if found[one.name] {
+            continue;
         }
-        open.push((i, one));
+        let none = |_| false;
+        index.visit_meeting(one, 0.0, none, |slot| {
+            let other = &index.items()[slot];
+            if other.name == one.name || !other.bounds.meets(&one.bounds) {
+                return ControlFlow::Continue(());
+            }
+            found[one.name] = true;
+            found[other.name] = true;
+            ControlFlow::Break(())
+        });
     }
     found
-}
-
-fn overlap(a: &Bounds, b: &Bounds) -> bool {
-    a.low.cmple(b.high).all() && b.low.cmple(a.high).all()
 }
 
 /// Returns an index of the triangles of the chosen components.
@@ -314,29 +337,147 @@ fn contacts(
 ) -> Vec<(usize, usize)> {
     let mut touching = vec![false; agreement.conflicts.len()];
     let mut pairs = Vec::new();
+    // By slot: the end of the slots that follow it and have the same component.
+    let mut ends: Vec<u32> = (1..=row(index.items().len())).collect();
+    for slot in (1..ends.len()).rev() {
+        let [before, here] =
+            [slot - 1, slot].map(|slot| agreement.component(index.items()[slot].face));
+        if before == here {
+            ends[slot - 1] = ends[slot];
+        }
+    }
     for triangle in index.items() {
         let own = agreement.component(triangle.face);
-        if !is_solid(own) {
+        // A component that touches none yet finds those that it touches by its own triangles.
+        if touching[own] || !is_solid(own) {
             continue;
         }
         let corners = triangle.corners_f64();
-        let centre = corners.iter().sum::<DVec3>() / 3.0;
-        let reach = corners.map(|corner| corner.distance_squared(centre));
-        // A little more than the radius, because the distance of a box is rounded.
-        let limit = 1.000_001 * reach.into_iter().fold(0.0, f64::max) + f64::MIN_POSITIVE;
-        index.visit_near(centre, limit, |slot| {
+        let skips = |slots: Range<usize>| {
+            agreement.component(index.items()[slots.start].face) == own
+                && ends[slots.start] as usize >= slots.end
+        };
+        index.visit_meeting(triangle, 0.0, skips, |slot| {
             let near = &index.items()[slot];
             let other = agreement.component(near.face);
-            let is_new = own != other && is_solid(other) && !(touching[own] && touching[other]);
-            if is_new && triangles_touch(corners, near.corners_f64()) {
+            if own != other
+                && near.bounds().meets(&triangle.bounds())
+                && is_solid(other)
+                && triangles_touch(corners, near.corners_f64())
+            {
                 touching[own] = true;
                 touching[other] = true;
                 pairs.push((own, other));
+                return ControlFlow::Break(());
             }
-            limit
+            ControlFlow::Continue(())
         });
     }
     pairs
+}
+
+/// Returns the number of components around each solid one, or one around it that touches another; `None`
+/// if this is not clear. All components are solid.
+///
+/// ```text
+///   ┌───────────────┐      From the end of a component in one direction, a ray leaves it. If it leaves the
+///   │ ┌───┐   ┌───┐ │ →    component that it hits first, this one is around it, and is one of those around
+///   │ │ c ├ → │ d │ ├ →    it more than are around the other. If it enters it, both have the same around
+///   │ └───┘   └───┘ │      them. The end of the other component is farther away, so its number is known.
+///   └───────────────┘
+/// ```
+///
+/// Most of a few directions decide. O(n log n) for components with n triangles. A component that touches
+/// another may be partly inside, so all hits count behind it.
+fn depths_by_first_hits(
+    index: &Bvh<FaceTriangle<FaceId>>,
+    agreement: &Agreement,
+    touching: &[bool],
+    signs: &[f64],
+) -> Vec<Option<Result<usize, usize>>> {
+    let component = |triangle: &FaceTriangle<FaceId>| agreement.component(triangle.face);
+    let in_direction = |i: u32| {
+        let along = DVec3::from_array(direction(i, FEW_DIRECTIONS));
+        let mut ends: Vec<Option<(f64, DVec3)>> = vec![None; touching.len()];
+        for triangle in index.items() {
+            let end = &mut ends[component(triangle)];
+            for corner in triangle.corners_f64() {
+                let place = along.dot(corner);
+                if end.is_none_or(|(farthest, _)| place > farthest) {
+                    *end = Some((place, corner));
+                }
+            }
+        }
+        let mut order: Vec<usize> = (0..ends.len()).filter(|&c| ends[c].is_some()).collect();
+        order.sort_by(|&a, &b| {
+            let [a, b] = [a, b].map(|c| ends[c].map_or(0.0, |(place, _)| place));
+            b.total_cmp(&a)
+        });
+        let mut depths: Vec<Option<Result<usize, usize>>> = vec![None; ends.len()];
+        for own in order.into_iter().filter(|&own| !touching[own]) {
+            let ray = ends[own].and_then(|(_, end)| Ray::new(end, along).ok());
+            let Some(ray) = ray else {
+                continue;
+            };
+            let mut first = None;
+            index.first_hit_where(&ray, f64::INFINITY, |triangle| {
+                let is_other = component(triangle) != own;
+                if is_other {
+                    first = Some(*triangle);
+                }
+                is_other
+            });
+            depths[own] = match first {
+                None => Some(Ok(0)),
+                Some(hit) if touching[component(&hit)] => {
+                    let around = odd_hits(index, &ray, agreement, own);
+                    let outer = around.iter().find(|&&outer| touching[outer]);
+                    Some(outer.map_or(Ok(around.len()), |&outer| Err(outer)))
+                }
+                Some(hit) => {
+                    let other = component(&hit);
+                    let sign = match agreement.reverse[hit.face.index()] {
+                        true => -signs[other],
+                        false => signs[other],
+                    };
+                    let leaves = sign * hit.normal().dot(along);
+                    depths[other]
+                        .filter(|_| leaves != 0.0)
+                        .map(|depth| depth.map(|depth| depth + usize::from(leaves > 0.0)))
+                }
+            };
+        }
+        depths
+    };
+    let [a, b, c] = [0, 1, 2].map(in_direction);
+    let most = a.into_iter().zip(b).zip(c).map(|((a, b), c)| {
+        if a.is_some() && (a == b || a == c) {
+            a
+        } else {
+            b.filter(|_| b == c)
+        }
+    });
+    most.collect()
+}
+
+/// Returns the other components that a ray hits an odd number of times, ascending.
+fn odd_hits(
+    index: &Bvh<FaceTriangle<FaceId>>,
+    ray: &Ray,
+    agreement: &Agreement,
+    own: usize,
+) -> Vec<usize> {
+    let mut hits: Vec<usize> = Vec::new();
+    index.for_each_hit(ray, f64::INFINITY, |hit| {
+        hits.push(agreement.component(hit.face));
+    });
+    hits.sort_unstable();
+    let odd = hits
+        .chunk_by(|a, b| a == b)
+        .filter(|same| same.len() % 2 == 1);
+    odd.map(|same| same[0])
+        .filter(|&other| other != own)
+        .collect()
 }
 
 /// Returns the other components that hide the outside from a triangle, and the part of the directions
@@ -354,15 +495,7 @@ fn hiding(
         let Ok(ray) = Ray::new(centre, direction(i, directions)) else {
             continue;
         };
-        let mut hits: Vec<usize> = Vec::new();
-        index.for_each_hit(&ray, f64::INFINITY, |hit| {
-            hits.push(agreement.component(hit.face));
-        });
-        hits.sort_unstable();
-        let odd = hits
-            .chunk_by(|a, b| a == b)
-            .filter(|same| same.len() % 2 == 1);
-        votes.extend(odd.map(|same| same[0]).filter(|&outer| outer != inner));
+        votes.extend(odd_hits(index, &ray, agreement, inner));
     }
     votes.sort_unstable();
     let parts = votes.chunk_by(|a, b| a == b);

@@ -26,6 +26,8 @@ impl Rule for SplitByArea {
     /// The depth of the node.
     type State = u32;
 
+    const CAN_TURN: bool = true;
+
     fn start(_: &[BoxedItem]) -> u32 {
         0
     }

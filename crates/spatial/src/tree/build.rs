@@ -1,7 +1,9 @@
 //! Building: a rule divides the items of a node, again and again.
 
+use glam::DMat3;
 use smallvec::SmallVec;
 
+use super::frame::{self, Sizes};
 use super::node::{LEAF_ITEMS, Node};
 use crate::bounds::Bounds;
 use crate::item::Item;
@@ -42,6 +44,9 @@ pub(super) mod sealed {
         /// What a rule passes from a node to its children.
         type State: Copy + Send + Sync;
 
+        /// Whether the boxes of a node may be along other axes than those of the node above.
+        const CAN_TURN: bool = false;
+
         /// Returns the state for the root.
         fn start(items: &[BoxedItem]) -> Self::State;
 
@@ -51,10 +56,15 @@ pub(super) mod sealed {
     }
 }
 
+/// Nodes that are built, and the axes of their boxes.
+#[derive(Default)]
+pub(super) struct Built<const W: usize> {
+    pub(super) nodes: Vec<Node<W>>,
+    pub(super) axes: Vec<DMat3>,
+}
+
 /// Builds the nodes, and the items in the order of the leaves.
-pub(super) fn build<I: Item, R: SplitRule, const W: usize>(
-    items: Vec<I>,
-) -> (Vec<Node<W>>, Vec<I>) {
+pub(super) fn build<I: Item, R: SplitRule, const W: usize>(items: Vec<I>) -> (Built<W>, Vec<I>) {
     let mut boxed: Vec<BoxedItem> = items
         .iter()
         .enumerate()
@@ -63,14 +73,21 @@ pub(super) fn build<I: Item, R: SplitRule, const W: usize>(
             item: row(number),
         })
         .collect();
-    let mut nodes = Vec::new();
+    let mut built = Built::default();
     if !boxed.is_empty() {
         let state = R::start(&boxed);
-        push_node::<R, W>(&mut boxed, 0, state, &mut nodes);
-        nodes.shrink_to_fit();
+        let whole = bounds_of(&boxed);
+        let root = Part {
+            items: &mut boxed,
+            first: 0,
+            bounds: whole,
+            state,
+        };
+        push_node::<I, R, W>(root, &items, None, &mut built);
+        built.nodes.shrink_to_fit();
     }
     let ordered = boxed.iter().map(|boxed| items[boxed.item as usize]);
-    (nodes, ordered.collect())
+    (built, ordered.collect())
 }
 
 /// A part of the items of a node.
@@ -82,30 +99,41 @@ struct Part<'a, S> {
     state: S,
 }
 
-/// Appends the node of `items`, whose first slot is `first`, and all nodes below it.
-fn push_node<R: SplitRule, const W: usize>(
-    items: &mut [BoxedItem],
-    first: usize,
-    state: R::State,
-    nodes: &mut Vec<Node<W>>,
+/// The parts of a node that is divided by the rule `R`.
+type PartsOf<'a, R> = SmallVec<[Part<'a, <R as sealed::Rule>::State>; 8]>;
+
+/// Appends the node of a part, whose boxes are along the axes with the number `axes`, and all nodes
+/// below it.
+fn push_node<I: Item, R: SplitRule, const W: usize>(
+    part: Part<'_, R::State>,
+    items: &[I],
+    axes: Option<usize>,
+    built: &mut Built<W>,
 ) {
-    let parts = parts_of::<R, W>(items, first, state);
-    let at = nodes.len();
-    nodes.push(Node::EMPTY);
+    let (parts, turned) = parts_of::<I, R, W>(part, items);
+    let axes = turned.map_or(axes, |turned| {
+        built.axes.push(turned);
+        Some(built.axes.len() - 1)
+    });
+    let at = built.nodes.len();
+    built.nodes.push(Node::EMPTY);
+    if let Some(axes) = axes {
+        built.nodes[at].set_axes(axes);
+    }
     #[cfg(feature = "rayon")]
     if parts.iter().map(|part| part.items.len()).sum::<usize>() >= PARALLEL_ITEMS
         && rayon::current_num_threads() > 1
     {
-        return push_parts_in_parallel::<R, W>(parts, at, nodes);
+        return push_parts_in_parallel::<I, R, W>(parts, items, at, axes, built);
     }
     for part in parts {
         let count = part.items.len();
         if count <= LEAF_ITEMS {
-            nodes[at].push(part.bounds, row(part.first), count);
+            built.nodes[at].push(part.bounds, row(part.first), count);
         } else {
-            let child = row(nodes.len());
-            nodes[at].push(part.bounds, child, 0);
-            push_node::<R, W>(part.items, part.first, part.state, nodes);
+            let child = row(built.nodes.len());
+            built.nodes[at].push(part.bounds, child, 0);
+            push_node::<I, R, W>(part, items, axes, built);
         }
     }
 }
@@ -113,61 +141,109 @@ fn push_node<R: SplitRule, const W: usize>(
 /// Appends the nodes below node `at`, each part on a thread of its own. The nodes and their order
 /// are the same as on one thread.
 #[cfg(feature = "rayon")]
-fn push_parts_in_parallel<R: SplitRule, const W: usize>(
-    parts: SmallVec<[Part<'_, R::State>; 8]>,
+fn push_parts_in_parallel<I: Item, R: SplitRule, const W: usize>(
+    parts: PartsOf<'_, R>,
+    items: &[I],
     at: usize,
-    nodes: &mut Vec<Node<W>>,
+    axes: Option<usize>,
+    built: &mut Built<W>,
 ) {
     use rayon::prelude::*;
-    let built: Vec<(Bounds, usize, usize, Vec<Node<W>>)> = parts
+    let own = axes.map(|axes| built.axes[axes]);
+    let below: Vec<(Bounds, usize, usize, Built<W>)> = parts
         .into_vec()
         .into_par_iter()
         .map(|part| {
-            let mut below = Vec::new();
-            let count = part.items.len();
+            let mut below = Built {
+                nodes: Vec::new(),
+                axes: own.into_iter().collect(),
+            };
+            let (bounds, first, count) = (part.bounds, part.first, part.items.len());
             if count > LEAF_ITEMS {
-                push_node::<R, W>(part.items, part.first, part.state, &mut below);
+                push_node::<I, R, W>(part, items, own.map(|_| 0), &mut below);
             }
-            (part.bounds, part.first, count, below)
+            (bounds, first, count, below)
         })
         .collect();
-    for (bounds, first, count, mut below) in built {
-        if below.is_empty() {
-            nodes[at].push(bounds, row(first), count);
+    for (bounds, first, count, mut below) in below {
+        if below.nodes.is_empty() {
+            built.nodes[at].push(bounds, row(first), count);
             continue;
         }
-        let offset = row(nodes.len());
-        nodes[at].push(bounds, offset, 0);
-        below.iter_mut().for_each(|node| node.shift_nodes(offset));
-        nodes.append(&mut below);
+        let offset = row(built.nodes.len());
+        let axes = built.axes.len();
+        built.nodes[at].push(bounds, offset, 0);
+        let nodes = below.nodes.iter_mut();
+        nodes.for_each(|node| node.shift(offset, axes));
+        built.nodes.append(&mut below.nodes);
+        built.axes.append(&mut below.axes);
     }
 }
 
-/// Divides the items of a node, which may also fit a leaf if the node is the root.
-fn parts_of<R: SplitRule, const W: usize>(
-    items: &mut [BoxedItem],
-    first: usize,
-    state: R::State,
-) -> SmallVec<[Part<'_, R::State>; 8]> {
-    let ends = if items.len() <= LEAF_ITEMS {
-        Parts::from_iter([(items.len(), state)])
-    } else {
-        R::divide(items, state, W)
-    };
+/// Divides a part, which may also fit a leaf if it is the root. Returns other axes, if the boxes of the
+/// parts are along these.
+fn parts_of<'a, I: Item, R: SplitRule, const W: usize>(
+    part: Part<'a, R::State>,
+    items: &[I],
+) -> (PartsOf<'a, R>, Option<DMat3>) {
+    let Part {
+        items: boxed,
+        first,
+        bounds: whole,
+        state,
+    } = part;
+    if boxed.len() <= LEAF_ITEMS {
+        return (
+            SmallVec::from_iter([Part {
+                items: boxed,
+                first,
+                bounds: whole,
+                state,
+            }]),
+            None,
+        );
+    }
+    let mut ends = R::divide(boxed, state, W);
+    let mut bounds = bounds_of_parts(boxed, &ends);
+    let sizes = Sizes::within(&whole);
+    let mut axes = None;
+    if R::CAN_TURN
+        && sizes.overlap(&whole, &bounds)
+        && let Some(turned) = frame::other_axes(boxed, items)
+    {
+        let before = boxed.to_vec();
+        for boxed in boxed.iter_mut() {
+            boxed.bounds = items[boxed.item as usize].bounds_along(&turned);
+        }
+        let new_ends = R::divide(boxed, state, W);
+        let new_bounds = bounds_of_parts(boxed, &new_ends);
+        if frame::is_better(sizes.sum(&bounds), sizes.sum(&new_bounds)) {
+            (ends, bounds, axes) = (new_ends, new_bounds, Some(turned));
+        } else {
+            boxed.copy_from_slice(&before);
+        }
+    }
     let mut parts = SmallVec::new();
-    let mut rest = items;
+    let mut rest = boxed;
     let mut start = 0;
-    for (end, state) in ends {
+    for ((end, state), bounds) in ends.into_iter().zip(bounds) {
         let (part, after) = rest.split_at_mut(end - start);
         parts.push(Part {
-            bounds: bounds_of(part),
             items: part,
             first: first + start,
+            bounds,
             state,
         });
         (rest, start) = (after, end);
     }
-    parts
+    (parts, axes)
+}
+
+/// Returns the smallest box around the items of each part.
+fn bounds_of_parts<S>(items: &[BoxedItem], ends: &Parts<S>) -> SmallVec<[Bounds; 8]> {
+    let mut start = 0;
+    let part = |&(end, _): &(usize, S)| bounds_of(&items[std::mem::replace(&mut start, end)..end]);
+    ends.iter().map(part).collect()
 }
 
 /// Returns the smallest box around `items`.

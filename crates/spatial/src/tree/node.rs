@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use sixfold_core::row;
 
 use crate::bounds::Bounds;
-use crate::ray::{SlabRay, larger, padded, rounded_outwards, smaller};
+use crate::ray::{Ray, SlabRay, larger, padded, rounded_outwards, smaller};
 
 /// The most items of a leaf; they fit four bits of [`Child`].
 pub(super) const LEAF_ITEMS: usize = 8;
@@ -18,8 +19,13 @@ pub(super) struct Node<const W: usize> {
     child: [u32; W],
     /// By lane, four bits: the number of items if the child is a leaf, 0 if it is a node.
     leaves: u32,
+    /// The number of children in the four lowest bits. Above them, 0 if the boxes are along the coordinate
+    /// axes, and else the number of their axes plus 1.
     children: u32,
 }
+
+/// The bits of [`Node::children`] for the number of children.
+const COUNT_BITS: u32 = 4;
 
 /// A child: a node, or the items of a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +82,19 @@ impl<const W: usize> Node<W> {
     /// Returns the number of children.
     #[inline(always)]
     pub(super) fn children(&self) -> usize {
-        self.children as usize
+        (self.children & ((1 << COUNT_BITS) - 1)) as usize
+    }
+
+    /// Returns the number of the axes of the boxes; `None` for the coordinate axes.
+    #[inline(always)]
+    pub(super) fn axes(&self) -> Option<usize> {
+        ((self.children >> COUNT_BITS) as usize).checked_sub(1)
+    }
+
+    /// Stores the number of the axes of the boxes.
+    pub(super) fn set_axes(&mut self, axes: usize) {
+        let count = self.children() as u32;
+        self.children = (row(axes + 1) << COUNT_BITS) | count;
     }
 
     /// Returns the child in `lane`.
@@ -89,7 +107,6 @@ impl<const W: usize> Node<W> {
     }
 
     /// Returns the box of the child in `lane`.
-    #[cfg(test)]
     pub(super) fn bounds(&self, lane: usize) -> Bounds {
         let corner = |table: &[[f32; W]; 3]| [0, 1, 2].map(|axis| table[axis][lane]).into();
         Bounds {
@@ -111,9 +128,12 @@ impl<const W: usize> Node<W> {
         self.children += 1;
     }
 
-    /// Adds `offset` to the numbers of all nodes that are children.
+    /// Adds `offset` to the numbers of all nodes that are children, and `axes` to that of its axes.
     #[cfg(feature = "rayon")]
-    pub(super) fn shift_nodes(&mut self, offset: u32) {
+    pub(super) fn shift(&mut self, offset: u32, axes: usize) {
+        if let Some(own) = self.axes() {
+            self.set_axes(own + axes);
+        }
         for lane in 0..self.children() {
             if self.child(lane).items == 0 {
                 self.child[lane] += offset;
@@ -160,6 +180,55 @@ impl<const W: usize> Node<W> {
             *near = if first <= last { first } else { f32::INFINITY };
         }
         near
+    }
+}
+
+/// The part by which bounds along rotated axes are lower than computed.
+const ROTATED: f64 = 1e-6;
+
+impl<const W: usize> Node<W> {
+    /// Returns the squared distance of each box along `axes` to `query`.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn distances_along(&self, axes: &DMat3, query: DVec3) -> [f32; W] {
+        let query = *axes * query;
+        std::array::from_fn(|lane| {
+            let (low, high) = self.box_f64(lane);
+            let gap = (low - query).max(query - high).max(DVec3::ZERO);
+            (gap.length_squared() * (1.0 - ROTATED)) as f32
+        })
+    }
+
+    /// Returns the parameter at which `ray` enters each box along `axes`, or infinity if it misses the
+    /// box.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn entries_along(&self, axes: &DMat3, ray: &Ray) -> [f32; W] {
+        let origin = *axes * ray.origin();
+        let direction = *axes * ray.scaled_direction();
+        std::array::from_fn(|lane| {
+            let (low, high) = self.box_f64(lane);
+            let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+            for axis in 0..3 {
+                let sides =
+                    [low[axis], high[axis]].map(|side| (side - origin[axis]) / direction[axis]);
+                // Both are NaN for a ray inside a plane of the box; such an axis does not restrict it.
+                near = near.max(sides[0].min(sides[1]));
+                far = far.min(sides[0].max(sides[1]));
+            }
+            let (near, far) = (near * (1.0 - ROTATED), far * (1.0 + ROTATED));
+            match near <= far {
+                true => (near as f32).next_down().max(0.0),
+                false => f32::INFINITY,
+            }
+        })
+    }
+
+    fn box_f64(&self, lane: usize) -> (DVec3, DVec3) {
+        let corner = |table: &[[f32; W]; 3]| {
+            DVec3::from_array([0, 1, 2].map(|axis| f64::from(table[axis][lane])))
+        };
+        (corner(&self.low), corner(&self.high))
     }
 }
 

@@ -29,21 +29,19 @@ fn triangles() -> impl Strategy<Value = Vec<Triangle>> {
     })
 }
 
-/// Checks T1 to T3 below `child`, and returns the box around its items.
+/// Checks T1 to T3 below `child`, and returns its slots.
 fn check<R: SplitRule, const W: usize>(
     tree: &Tree<Triangle, R, W>,
     child: Child,
     seen: &mut [bool],
-) -> Bounds {
+) -> Vec<usize> {
     if let Some(slots) = child.slots() {
         assert!(slots.len() <= LEAF_ITEMS, "T3");
-        return slots.fold(Bounds::EMPTY, |bounds, slot| {
-            assert!(
-                !std::mem::replace(&mut seen[slot], true),
-                "T1: slot {slot} is in two leaves"
-            );
-            bounds.union(tree.items[slot].bounds())
-        });
+        for slot in slots.clone() {
+            let was_seen = std::mem::replace(&mut seen[slot], true);
+            assert!(!was_seen, "T1: slot {slot} is in two leaves");
+        }
+        return slots.collect();
     }
     let node = &tree.nodes[child.node()];
     let is_root = child == Child::ROOT;
@@ -51,11 +49,20 @@ fn check<R: SplitRule, const W: usize>(
         node.children() >= 2 || is_root && tree.items.len() <= LEAF_ITEMS,
         "T3"
     );
-    (0..node.children()).fold(Bounds::EMPTY, |bounds, lane| {
+    let mut all = Vec::new();
+    for lane in 0..node.children() {
         let below = check(tree, node.child(lane), seen);
-        assert_eq!(below, node.bounds(lane), "T2");
-        bounds.union(below)
-    })
+        let items = below.iter().map(|&slot| &tree.items[slot]);
+        let bounds = items.fold(Bounds::EMPTY, |bounds, item| {
+            bounds.union(match node.axes() {
+                None => item.bounds(),
+                Some(axes) => item.bounds_along(&tree.axes[axes]),
+            })
+        });
+        assert_eq!(bounds, node.bounds(lane), "T2");
+        all.extend(below);
+    }
+    all
 }
 
 fn check_tree<R: SplitRule, const W: usize>(items: &[Triangle]) {
@@ -82,6 +89,46 @@ proptest! {
         check_tree::<SplitByArea, 8>(&items);
         check_tree::<SplitByMedian, 2>(&items);
     }
+}
+
+/// Returns a bundle of `n` parallel needles, whose boxes all overlap.
+fn needles(n: u32) -> Vec<Triangle> {
+    let at = |face: u32| Vec3::new((face % 32) as f32, (face / 32) as f32, 0.0);
+    let corners = |face| {
+        let at = at(face);
+        [at, at + Vec3::new(100.0, 90.0, 80.0), at + Vec3::X * 0.1]
+    };
+    let needle = |face| FaceTriangle {
+        face,
+        corners: corners(face),
+    };
+    (0..n).map(needle).collect()
+}
+
+#[test]
+fn needles_are_boxed_along_their_length() {
+    let items = needles(1024);
+    check_tree::<SplitByArea, 4>(&items);
+    let tree = Bvh::build(items).expect("finite");
+    assert!(!tree.axes.is_empty());
+    // A search in the middle of the bundle visits few of them.
+    let query = DVec3::new(66.0, 60.0, 40.0);
+    let mut visited = 0;
+    tree.visit_near(query, 0.01, |_| {
+        visited += 1;
+        0.01
+    });
+    assert!((1..100).contains(&visited), "{visited}");
+    // Other rules, and surfaces, need no axes.
+    assert!(
+        KdTree::build(needles(1024))
+            .expect("finite")
+            .axes
+            .is_empty()
+    );
+    let sphere = sixfold_shapes::geodesic(16).expect("a small sphere");
+    let sphere = crate::polygon_triangles(&sphere).expect("finite");
+    assert!(Bvh::build(sphere).expect("finite").axes.is_empty());
 }
 
 /// Each item is half as far from the origin as the one before.

@@ -57,12 +57,18 @@ struct Input {
 fn input(most: usize) -> impl Strategy<Value = Input> {
     let numbers = |most: usize| prop::collection::vec(any::<[u32; 3]>(), 0..most);
     let queries = prop::collection::vec((any::<[u32; 3]>(), 0..4_u8, spread()), 1..12);
-    (prop::array::uniform3(spread()), numbers(most), queries).prop_map(
-        |(spreads, places, queries)| {
+    let spreads = prop::array::uniform3(spread());
+    (spreads, numbers(most), queries, prop::bool::weighted(0.3)).prop_map(
+        |(spreads, places, queries, has_needles)| {
             let place = |numbers: [u32; 3]| {
                 Vec3::from([0, 1, 2].map(|axis| spreads[axis].coordinate(numbers[axis])))
             };
-            let places: Vec<Vec3> = places.into_iter().map(place).collect();
+            let mut places: Vec<Vec3> = places.into_iter().map(place).collect();
+            if has_needles {
+                // Each second place is near one point, so triangles are long, and their boxes overlap.
+                let near = places.iter_mut().step_by(2);
+                near.for_each(|place| *place *= 1e-3);
+            }
             let query = |(numbers, kind, other): ([u32; 3], u8, Spread)| {
                 let near = place(numbers).as_dvec3();
                 match kind {

@@ -3,36 +3,65 @@
 use glam::{DVec2, Vec2Swizzles};
 
 use super::plane::orient2d;
+use super::regions::Winding;
+
+/// The most pairs of triangles with overlapping extents along an axis, for each triangle, that are
+/// looked at.
+const PAIRS: usize = 256;
 
 /// Returns the area where triangles overlap, divided by the area of all triangles. A point in `k`
 /// triangles counts `k·(k − 1)/2` times. The triangles are those of the polygon `corners`, and none is
 /// turned over.
 ///
-/// O(n log n + k) time for a polygon of `n` corners whose triangles have `k` pairs with overlapping
-/// extents along an axis.
+/// The result is exact if at most [`PAIRS`] · n pairs of the n triangles have overlapping extents along an
+/// axis. Otherwise it is estimated: the polygon winds as often around a point as it is in triangles, and
+/// this number is taken at the centre of each triangle.
+///
+/// O(n log n + k) time for a polygon of `n` corners whose triangles have `k` such pairs, of which at most
+/// `n` · [`PAIRS`] are looked at.
 pub(super) fn overlapping_part(corners: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
-    // Two triangles without turned ones lie on either side of their diagonal.
-    if triangles.len() < 3 || is_convex(corners) {
-        return 0.0;
-    }
-    let triangles = || triangles.iter().map(|t| t.map(|i| corners[i]));
-    let all: f64 = triangles().map(|t| area(&t)).sum();
+    let of_corners = || triangles.iter().map(|t| t.map(|i| corners[i]));
+    let all: f64 = of_corners().map(|t| area(&t)).sum();
     let (along_x, along_y) = (
-        sweep_cost(triangles(), |p| p.x),
-        sweep_cost(triangles(), |p| p.y),
+        sweep_cost(of_corners(), |p| p.x),
+        sweep_cost(of_corners(), |p| p.y),
     );
-    let overlap = match along_x <= along_y {
-        true => overlap(triangles().collect()),
+    let (overlap, is_exact) = match along_x <= along_y {
+        true => overlap(of_corners().collect()),
         false => overlap(
-            triangles()
+            of_corners()
                 .map(|[a, b, c]| [a.yx(), c.yx(), b.yx()])
                 .collect(),
         ),
+    };
+    let overlap = match is_exact {
+        true => overlap,
+        false => overlap.max(estimate(corners, of_corners())),
     };
     match all > 0.0 {
         true => overlap / all,
         false => 0.0,
     }
+}
+
+/// Returns an estimate of the sum of the areas of the intersections of all pairs of triangles.
+fn estimate(corners: &[DVec2], triangles: impl Iterator<Item = [DVec2; 3]>) -> f64 {
+    let n = corners.len();
+    let (next, removed): (Vec<u32>, _) = ((1..n as u32).chain([0]).collect(), vec![false; n]);
+    let mut winding = Winding::default();
+    winding.reset(corners, &next, &removed);
+    let others = |triangle: [DVec2; 3]| {
+        let centre = triangle.iter().sum::<DVec2>() / 3.0;
+        let times = winding.around(centre, corners, &next, &removed);
+        0.5 * (times - 1).max(0) as f64 * area(&triangle)
+    };
+    triangles.map(others).sum()
+}
+
+/// Returns whether triangles of the polygon may overlap of which none is turned over.
+pub(super) fn may_overlap(corners: &[DVec2]) -> bool {
+    // Two triangles lie on either side of their diagonal.
+    corners.len() > 4 && !is_convex(corners)
 }
 
 /// Returns whether all corners turn left and the polygon winds once.
@@ -66,14 +95,20 @@ fn extent(triangle: &[DVec2; 3], axis: impl Fn(DVec2) -> f64) -> (f64, f64) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-/// Returns the sum of the areas of the intersections of all pairs of triangles, by a sweep along x.
-fn overlap(mut triangles: Vec<[DVec2; 3]>) -> f64 {
+/// Returns the sum of the areas of the intersections of all pairs of triangles, by a sweep along x, and
+/// whether all pairs were looked at.
+fn overlap(mut triangles: Vec<[DVec2; 3]>) -> (f64, bool) {
     triangles.sort_by(|a, b| extent(a, |p| p.x).0.total_cmp(&extent(b, |p| p.x).0));
     let mut sum = 0.0;
+    let mut pairs = PAIRS * triangles.len();
     let mut active: Vec<([DVec2; 3], f64, (f64, f64))> = Vec::new();
     for triangle in triangles {
         let ((left, right), (low, high)) = (extent(&triangle, |p| p.x), extent(&triangle, |p| p.y));
         active.retain(|&(_, end, _)| end > left);
+        let Some(rest) = pairs.checked_sub(active.len()) else {
+            return (sum, false);
+        };
+        pairs = rest;
         for (other, _, y) in &active {
             if y.0 < high && low < y.1 && !is_apart(&triangle, other) && !is_apart(other, &triangle)
             {
@@ -82,7 +117,7 @@ fn overlap(mut triangles: Vec<[DVec2; 3]>) -> f64 {
         }
         active.push((triangle, right, (low, high)));
     }
-    sum
+    (sum, true)
 }
 
 /// Returns whether a side of `triangle` separates it from `other`.
