@@ -35,7 +35,7 @@ impl<P: Probe, E: Editing> Described for CornerTable<E, P> {
         ]
     }
 
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+    fn record(&self, table: &str, row: usize, _walks: bool) -> Option<Vec<Field>> {
         let is_hole = match table {
             "positions" | "corner" => self.vertex_holes.has(row),
             _ => self.face_holes.has(row / 3),

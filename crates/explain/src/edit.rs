@@ -286,7 +286,7 @@ impl Changed {
             for row in 0..table.rows {
                 let place = (table.name, row);
                 let (is_read, is_written) = (read.contains(&place), written.contains(&place));
-                let [before, after] = [before, after].map(|mesh| mesh.fields(table.name, row));
+                let [before, after] = [before, after].map(|mesh| mesh.own_fields(table.name, row));
                 let are_equal = are_equal(&table, before.as_deref(), after.as_deref());
                 if is_written || !are_equal {
                     self.changed += usize::from(!are_equal);

@@ -28,8 +28,11 @@ pub(crate) trait RecordSource {
     /// Calls [`Described::tables`].
     fn record_tables(&self) -> Vec<RecordTable>;
 
-    /// Calls [`Described::record`].
+    /// Calls [`Described::record`], with all fields.
     fn fields(&self, table: &str, row: usize) -> Option<Vec<Field>>;
+
+    /// Calls [`Described::record`], without fields that are found by walks.
+    fn own_fields(&self, table: &str, row: usize) -> Option<Vec<Field>>;
 }
 
 impl<P: Described> RecordSource for P {
@@ -38,7 +41,11 @@ impl<P: Described> RecordSource for P {
     }
 
     fn fields(&self, table: &str, row: usize) -> Option<Vec<Field>> {
-        self.record(table, row)
+        self.record(table, row, true)
+    }
+
+    fn own_fields(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+        self.record(table, row, false)
     }
 }
 

@@ -143,7 +143,7 @@ impl<'m> Inference<'m> {
             self.asked.insert(name);
         }
         self.learn(name, Line::SAME, None, whole);
-        let fields = self.mesh.fields(table.name, row).unwrap_or_default();
+        let fields = self.mesh.own_fields(table.name, row).unwrap_or_default();
         for (column, field) in table.columns.iter().zip(fields) {
             if let Field::Row(to) = field
                 && !column.is_derived
@@ -172,7 +172,7 @@ impl<'m> Inference<'m> {
             }
             let fields = self
                 .mesh
-                .fields(table.name, name.row as usize)
+                .own_fields(table.name, name.row as usize)
                 .unwrap_or_default();
             for (column, field) in table.columns.iter().zip(fields) {
                 if let Field::Row(to) = field
@@ -212,7 +212,7 @@ impl<'m> Inference<'m> {
         {
             let fields = self
                 .mesh
-                .fields(same.name, name.row as usize)
+                .own_fields(same.name, name.row as usize)
                 .unwrap_or_default();
             for (column, field) in same.columns.iter().zip(fields) {
                 if let Field::Row(of) = field

@@ -271,7 +271,7 @@ impl Recorder<'_> {
             last.fields.clear();
             return;
         }
-        let record = self.mesh.fields(table.name, row).unwrap_or_default();
+        let record = self.mesh.own_fields(table.name, row).unwrap_or_default();
         self.steps.push(Step::Read(Read {
             table: table.name,
             row: format!("{}{row}", table.letter),

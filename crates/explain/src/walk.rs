@@ -299,7 +299,7 @@ impl Walker<'_> {
         let table = tables.find(|table| Some(table.letter) == letter);
         if let (Some(table), Some(row)) = (table, row)
             && !is_removed
-            && self.mesh.fields(table.name, row as usize).is_some()
+            && self.mesh.own_fields(table.name, row as usize).is_some()
         {
             self.probe.take();
             let letter = table.letter;
@@ -327,7 +327,10 @@ impl Walker<'_> {
         };
         let column = table.columns[place];
         self.probe.take();
-        let record = self.mesh.fields(table.name, row.row as usize);
+        let record = match column.is_searched {
+            true => self.mesh.fields(table.name, row.row as usize),
+            false => self.mesh.own_fields(table.name, row.row as usize),
+        };
         let searched = self.probe.take();
         let record = record.unwrap_or_default();
         let line = Some(self.line);
@@ -362,7 +365,7 @@ impl Walker<'_> {
     }
 
     fn stored(&self, table: RecordTable, row: usize) -> Vec<(&'static str, String)> {
-        let record = self.mesh.fields(table.name, row).unwrap_or_default();
+        let record = self.mesh.own_fields(table.name, row).unwrap_or_default();
         self.probe.take();
         stored_fields(&table, &record)
     }

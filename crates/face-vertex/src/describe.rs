@@ -35,7 +35,7 @@ impl<P: Probe, E: Editing> Described for FaceVertexMesh<E, P> {
         tables
     }
 
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+    fn record(&self, table: &str, row: usize, _walks: bool) -> Option<Vec<Field>> {
         match table {
             "positions" | "fans" if self.vertex_holes.has(row) => None,
             "positions" => Some(vec![Field::Point(*self.positions.rows().get(row)?)]),

@@ -40,7 +40,7 @@ impl<P: Probe, E: Editing> Described for HalfEdgeMesh<E, P> {
         ]
     }
 
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+    fn record(&self, table: &str, row: usize, walks: bool) -> Option<Vec<Field>> {
         let is_hole = match table {
             "positions" | "leaving" => self.vertex_holes.has(row),
             "halves" => self.edge_holes.has(row / 2),
@@ -60,7 +60,7 @@ impl<P: Probe, E: Editing> Described for HalfEdgeMesh<E, P> {
                     Field::row("h", half.next),
                     Field::optional("f", half.face.get()),
                     Field::row("h", h.twin()),
-                    Field::row("h", self.prev(h)),
+                    Field::optional("h", walks.then(|| self.prev(h))),
                     Field::row("e", h.edge()),
                 ]
             }

@@ -22,7 +22,7 @@ impl<P: Probe, E: Editing> Described for IndexedFaceSet<E, P> {
         tables
     }
 
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+    fn record(&self, table: &str, row: usize, _walks: bool) -> Option<Vec<Field>> {
         match table {
             "positions" if self.vertex_holes.has(row) => None,
             "positions" => Some(vec![Field::Point(*self.positions.rows().get(row)?)]),

@@ -12,7 +12,7 @@ impl<P: Probe, E: Editing> Described for PolygonSoup<E, P> {
         self.faces.record_tables()
     }
 
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+    fn record(&self, table: &str, row: usize, _walks: bool) -> Option<Vec<Field>> {
         self.faces
             .record(table, row, |v| Field::Point(v.position()))
     }

@@ -36,7 +36,7 @@ impl<P: Probe, E: Editing> Described for WingedEdgeMesh<E, P> {
         ]
     }
 
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+    fn record(&self, table: &str, row: usize, _walks: bool) -> Option<Vec<Field>> {
         let is_hole = match table {
             "positions" | "spokes" => self.vertex_holes.has(row),
             "edges" => self.edge_holes.has(row),

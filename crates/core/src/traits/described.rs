@@ -20,7 +20,10 @@ pub trait Described: MeshQuery {
 
     /// Returns the fields of a row, in the order of the columns of its table; `None` if there is no
     /// such row, or if the row belongs to a deleted element. A probe may record reads.
-    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>>;
+    ///
+    /// Unless `walks` is true, a field that a walk along other rows finds is [`Field::None`], so that the
+    /// records of all rows take O(rows).
+    fn record(&self, table: &str, row: usize, walks: bool) -> Option<Vec<Field>>;
 
     /// Returns the names of the rows that the handle of an element gives without a read. A structure
     /// without rows for this kind of element returns none, or the rows of the ends of an edge.

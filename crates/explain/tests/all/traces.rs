@@ -155,7 +155,7 @@ impl<M: Representation + Measured + Described> Expected<M> {
             };
             add(name);
             for table in tables.iter().filter(|table| table.letter == name.letter) {
-                let fields = self.mesh.record(table.name, name.row as usize);
+                let fields = self.mesh.record(table.name, name.row as usize, true);
                 let fields = table.columns.iter().zip(fields.unwrap_or_default());
                 let named = fields.filter_map(|(column, field)| match field {
                     Field::Row(to) if is_read || column.is_derived => Some(to),
@@ -221,7 +221,7 @@ impl<M: Representation + Measured + Described> Expected<M> {
                 .any(|table| {
                     let fields = self
                         .mesh
-                        .record(table.name, from.row as usize)
+                        .record(table.name, from.row as usize, true)
                         .unwrap_or_default();
                     let mut fields = table.columns.iter().zip(fields);
                     fields.any(|(column, field)| column.name == way && field == Field::Row(to))

@@ -26,7 +26,7 @@ impl Rule for SplitByArea {
     /// The depth of the node.
     type State = u32;
 
-    const CAN_TURN: bool = true;
+    const DIVIDES_AGAIN: bool = true;
 
     fn start(_: &[BoxedItem]) -> u32 {
         0
@@ -39,6 +39,11 @@ impl Rule for SplitByArea {
         }
         let area = |items: &[BoxedItem]| bounds_of(items).half_area();
         divide_by_halves(items, depth + 1, width, area, cheapest)
+    }
+
+    fn divide_again(items: &mut [BoxedItem], depth: u32, width: usize) -> Parts<u32> {
+        let area = |items: &[BoxedItem]| bounds_of(items).half_area();
+        divide_by_halves(items, depth + 1, width, area, cheapest_of_all)
     }
 }
 
@@ -68,19 +73,66 @@ impl Bin {
     }
 }
 
-/// Divides `items` at the cheapest border between two bins, and returns the length of the first part.
+/// A border between two bins along an axis.
+#[derive(Clone, Copy)]
+struct Border {
+    cost: f64,
+    axis: usize,
+    low: f32,
+    scale: f32,
+    /// The number of bins before it.
+    bins: usize,
+}
+
+impl Border {
+    #[inline]
+    fn bin(&self, item: &BoxedItem) -> usize {
+        (((item.centre()[self.axis] - self.low) * self.scale) as usize).min(BINS - 1)
+    }
+}
+
+/// Divides `items` at the cheapest border between two bins along the longest axis, and returns the length of
+/// the first part.
 fn cheapest(items: &mut [BoxedItem]) -> usize {
     let centres = bounds_of_centres(items);
-    let (axis, length) = centres.longest_axis();
-    let scale = (BINS as f64 / length) as f32;
-    if !scale.is_finite() || scale <= 0.0 {
+    let (axis, _) = centres.longest_axis();
+    divide_at(items, cheapest_border(items, &centres, axis))
+}
+
+/// Divides `items` at the cheapest border along any axis.
+fn cheapest_of_all(items: &mut [BoxedItem]) -> usize {
+    let centres = bounds_of_centres(items);
+    let borders = (0..3).filter_map(|axis| cheapest_border(items, &centres, axis));
+    let cheapest = borders.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    divide_at(items, cheapest)
+}
+
+fn divide_at(items: &mut [BoxedItem], border: Option<Border>) -> usize {
+    let Some(border) = border else {
         return median::halve(items); // all middles are equal, or nearly so
+    };
+    match partition(items, |item| border.bin(item) < border.bins) {
+        0 => median::halve(items), // no border separates them
+        first => first,
     }
-    let low = centres.low[axis];
-    let bin = |item: &BoxedItem| (((item.centre()[axis] - low) * scale) as usize).min(BINS - 1);
+}
+
+/// Returns the cheapest border along an axis; `None` if all middles are at the same place along it.
+fn cheapest_border(items: &[BoxedItem], centres: &Bounds, axis: usize) -> Option<Border> {
+    let scale = (BINS as f64 / centres.extent()[axis]) as f32;
+    if !scale.is_finite() || scale <= 0.0 {
+        return None;
+    }
+    let mut best = Border {
+        cost: f64::INFINITY,
+        axis,
+        low: centres.low[axis],
+        scale,
+        bins: 0,
+    };
     let mut bins = [Bin::EMPTY; BINS];
-    for item in &*items {
-        let bin = &mut bins[bin(item)];
+    for item in items {
+        let bin = &mut bins[best.bin(item)];
         bin.bounds = bin.bounds.union(item.bounds);
         bin.items += 1;
     }
@@ -95,16 +147,12 @@ fn cheapest(items: &mut [BoxedItem]) -> usize {
         after[border] = next.with(bins[border]);
     }
     let mut before = Bin::EMPTY;
-    let mut best = (f64::INFINITY, 0);
     for border in 1..BINS {
         before = before.with(bins[border - 1]);
         let cost = before.cost() + after[border].cost();
-        if before.items > 0 && after[border].items > 0 && cost < best.0 {
-            best = (cost, border);
+        if before.items > 0 && after[border].items > 0 && cost < best.cost {
+            (best.cost, best.bins) = (cost, border);
         }
     }
-    match partition(items, |item| bin(item) < best.1) {
-        0 => median::halve(items), // no border separates them
-        first => first,
-    }
+    Some(best)
 }

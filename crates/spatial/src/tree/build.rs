@@ -3,7 +3,7 @@
 use glam::DMat3;
 use smallvec::SmallVec;
 
-use super::frame::{self, Sizes};
+use super::frame::{self, FEW, Sizes};
 use super::node::{LEAF_ITEMS, Node};
 use crate::bounds::Bounds;
 use crate::item::Item;
@@ -44,8 +44,9 @@ pub(super) mod sealed {
         /// What a rule passes from a node to its children.
         type State: Copy + Send + Sync;
 
-        /// Whether the boxes of a node may be along other axes than those of the node above.
-        const CAN_TURN: bool = false;
+        /// Whether parts whose boxes overlap are divided again, also along other axes than those of the node
+        /// above.
+        const DIVIDES_AGAIN: bool = false;
 
         /// Returns the state for the root.
         fn start(items: &[BoxedItem]) -> Self::State;
@@ -53,6 +54,15 @@ pub(super) mod sealed {
         /// Reorders `items`, which do not fit a leaf, and returns 2 to `width` parts that are not
         /// empty.
         fn divide(items: &mut [BoxedItem], state: Self::State, width: usize) -> Parts<Self::State>;
+
+        /// Divides items like [`divide`](Self::divide), with more work for parts that overlap less.
+        fn divide_again(
+            items: &mut [BoxedItem],
+            state: Self::State,
+            width: usize,
+        ) -> Parts<Self::State> {
+            Self::divide(items, state, width)
+        }
     }
 }
 
@@ -205,22 +215,26 @@ fn parts_of<'a, I: Item, R: SplitRule, const W: usize>(
     }
     let mut ends = R::divide(boxed, state, W);
     let mut bounds = bounds_of_parts(boxed, &ends);
-    let sizes = Sizes::within(&whole);
     let mut axes = None;
-    if R::CAN_TURN
-        && sizes.overlap(&whole, &bounds)
-        && let Some(turned) = frame::other_axes(boxed, items)
-    {
-        let before = boxed.to_vec();
-        for boxed in boxed.iter_mut() {
-            boxed.bounds = items[boxed.item as usize].bounds_along(&turned);
-        }
-        let new_ends = R::divide(boxed, state, W);
-        let new_bounds = bounds_of_parts(boxed, &new_ends);
-        if frame::is_better(sizes.sum(&bounds), sizes.sum(&new_bounds)) {
-            (ends, bounds, axes) = (new_ends, new_bounds, Some(turned));
-        } else {
-            boxed.copy_from_slice(&before);
+    let sizes = Sizes::within(&whole);
+    if R::DIVIDES_AGAIN && boxed.len() > FEW && sizes.overlap(&whole, &bounds) {
+        let mut least = sizes.sum(&bounds);
+        let mut before = boxed.to_vec();
+        for turned in [None, frame::other_axes(boxed, items)] {
+            if let Some(turned) = &turned {
+                for boxed in boxed.iter_mut() {
+                    boxed.bounds = items[boxed.item as usize].bounds_along(turned);
+                }
+            }
+            let new_ends = R::divide_again(boxed, state, W);
+            let new_bounds = bounds_of_parts(boxed, &new_ends);
+            let sum = sizes.sum(&new_bounds);
+            if frame::is_better(least, sum, turned.is_some()) {
+                (least, ends, bounds, axes) = (sum, new_ends, new_bounds, turned);
+                before.copy_from_slice(boxed);
+            } else {
+                boxed.copy_from_slice(&before);
+            }
         }
     }
     let mut parts = SmallVec::new();

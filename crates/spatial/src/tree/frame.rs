@@ -13,19 +13,19 @@ use super::build::BoxedItem;
 use crate::bounds::Bounds;
 use crate::item::Item;
 
-/// Nodes with at most this number of items keep the axes of the node above.
-const FEW: usize = 16;
+/// Nodes with at most this number of items are not divided again.
+pub(super) const FEW: usize = 16;
 
 /// The boxes of parts overlap if their sizes are more than this multiple of the size of the whole. The
 /// parts of a surface have about the size of the whole.
 const OVERLAPPING: f64 = 2.0;
 
-/// Other axes are used if the sizes of the parts are at most this part of those along the old axes.
+/// Other axes are used if the sizes of the parts are less than this part of those along the old axes.
 const BETTER: f64 = 0.5;
 
 /// The length of a box along an axis counts at least this part of the longest box, so that flat boxes have
 /// a size.
-const LEAST_LENGTH: f64 = 1e-3;
+const LEAST_LENGTH: f64 = 1e-6;
 
 /// The sizes of boxes: products of their lengths.
 pub(super) struct Sizes {
@@ -55,11 +55,8 @@ impl Sizes {
 }
 
 /// Returns axes along which the items of a node may have smaller boxes: along their longest side, and
-/// along the side that is longest across it. `None` if there are few items, or if the sides are on one line.
+/// along the side that is longest across it. `None` if the sides are on one line.
 pub(super) fn other_axes<I: Item>(boxed: &[BoxedItem], items: &[I]) -> Option<DMat3> {
-    if boxed.len() <= FEW {
-        return None;
-    }
     let sides = || {
         boxed
             .iter()
@@ -80,7 +77,8 @@ pub(super) fn other_axes<I: Item>(boxed: &[BoxedItem], items: &[I]) -> Option<DM
     Some(DMat3::from_cols(first, second, first.cross(second)).transpose())
 }
 
-/// Returns whether other axes are used: `before` and `after` are the sums of the sizes of the parts.
-pub(super) fn is_better(before: f64, after: f64) -> bool {
-    after <= BETTER * before && before.is_finite()
+/// Returns whether other parts are used: `before` and `after` are the sums of the sizes of the parts.
+pub(super) fn is_better(before: f64, after: f64, is_turned: bool) -> bool {
+    let factor = if is_turned { BETTER } else { 1.0 };
+    after < factor * before && before.is_finite()
 }
