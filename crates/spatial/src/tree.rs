@@ -8,7 +8,7 @@ mod node;
 mod octants;
 
 use std::marker::PhantomData;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
@@ -143,22 +143,25 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
 
 impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
     /// Calls `visit` with the slots of items until it breaks, among them each that has a point within `reach`
-    /// of a point of `shape` along all coordinate axes.
+    /// of a point of `shape` along all coordinate axes. Nodes are left out if `skips` returns true for the
+    /// range of their slots.
     ///
     /// Visits O(log n) nodes, and the items found, for items that are spread evenly.
     pub fn visit_meeting(
         &self,
         shape: &impl Item,
         reach: f32,
+        skips: impl Fn(Range<usize>) -> bool,
         mut visit: impl FnMut(usize) -> ControlFlow<()>,
     ) {
         // Along other axes, points are at most this far apart.
         let turned = reach * 3_f32.sqrt().next_up();
-        let mut stack: SmallVec<[Child; 64]> = SmallVec::new();
+        // A child, and the slot after its last.
+        let mut stack: SmallVec<[(Child, usize); 64]> = SmallVec::new();
         if !self.nodes.is_empty() {
-            stack.push(Child::ROOT);
+            stack.push((Child::ROOT, self.items.len()));
         }
-        while let Some(child) = stack.pop() {
+        while let Some((child, end)) = stack.pop() {
             if let Some(mut slots) = child.slots() {
                 if slots.try_for_each(&mut visit).is_break() {
                     return;
@@ -167,13 +170,31 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
             }
             let node = &self.nodes[child.node()];
             let axes = node.axes().map(|axes| &self.axes[axes]);
-            let reach = if axes.is_some() { turned } else { reach };
-            let met = |&lane: &usize| shape.may_meet(axes, &node.bounds(lane).widened(reach));
-            stack.extend(
-                (0..node.children())
-                    .filter(met)
-                    .map(|lane| node.child(lane)),
-            );
+            let mut end = end;
+            for lane in (0..node.children()).rev() {
+                let child = node.child(lane);
+                let first = self.first_slot(child);
+                let slots = first..std::mem::replace(&mut end, first);
+                if shape.may_meet(
+                    axes,
+                    &node
+                        .bounds(lane)
+                        .widened(if axes.is_some() { turned } else { reach }),
+                ) && !skips(slots.clone())
+                {
+                    stack.push((child, slots.end));
+                }
+            }
+        }
+    }
+
+    /// Returns the first slot below a child.
+    fn first_slot(&self, mut child: Child) -> usize {
+        loop {
+            match child.slots() {
+                Some(slots) => return slots.start,
+                None => child = self.nodes[child.node()].child(0),
+            }
         }
     }
 }

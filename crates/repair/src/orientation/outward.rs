@@ -1,10 +1,9 @@
 //! The outside of each component.
 
-use std::cell::OnceCell;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use glam::{DMat3, DVec3};
-use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId, row};
 use sixfold_spatial::{
     Bounds, Bvh, FaceTriangle, Item, NamedBox, Ray, SpatialIndex, SurfaceQueries, TurnedBox,
     triangles_touch,
@@ -28,9 +27,6 @@ const ENCLOSED: f64 = 0.9;
 const FEW_DIRECTIONS: u32 = 3;
 /// The number of directions if components are open.
 const DIRECTIONS: u32 = 64;
-
-/// Components with at most this number of triangles are compared triangle by triangle.
-const FEW_TRIANGLES: usize = 32;
 
 /// Returns for each component whether all of its faces are to be reversed after those in
 /// [`Agreement::reverse`], so that it faces outward. `first` has the first face of each.
@@ -296,7 +292,8 @@ fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
         if found[one.name] {
             continue;
         }
-        index.visit_meeting(one, 0.0, |slot| {
+        let none = |_| false;
+        index.visit_meeting(one, 0.0, none, |slot| {
             let other = &index.items()[slot];
             if other.name == one.name || !other.bounds.meets(&one.bounds) {
                 return ControlFlow::Continue(());
@@ -332,46 +329,6 @@ fn index(
     Bvh::build(triangles).ok()
 }
 
-/// The triangles of one component, and an index of them, if they are many.
-struct Component<'t> {
-    triangles: &'t [FaceTriangle<FaceId>],
-    index: OnceCell<Option<Bvh<FaceTriangle<FaceId>>>>,
-}
-
-impl Component<'_> {
-    /// Returns whether a triangle of one component touches one of the other.
-    fn touches(&self, other: &Self) -> bool {
-        let [few, many] = match self.triangles.len() <= other.triangles.len() {
-            true => [self, other],
-            false => [other, self],
-        };
-        let touch = |a: &FaceTriangle<FaceId>, b: &FaceTriangle<FaceId>| {
-            a.bounds().meets(&b.bounds()) && triangles_touch(a.corners_f64(), b.corners_f64())
-        };
-        if many.triangles.len() <= FEW_TRIANGLES {
-            let mut few = few.triangles.iter();
-            return few.any(|a| many.triangles.iter().any(|b| touch(a, b)));
-        }
-        let index = many
-            .index
-            .get_or_init(|| Bvh::build(many.triangles.to_vec()).ok());
-        let Some(index) = index else {
-            return false; // unreachable: the triangles were in an index before
-        };
-        few.triangles.iter().any(|triangle| {
-            let mut found = false;
-            index.visit_meeting(triangle, 0.0, |slot| {
-                found = touch(triangle, &index.items()[slot]);
-                match found {
-                    true => ControlFlow::Break(()),
-                    false => ControlFlow::Continue(()),
-                }
-            });
-            found
-        })
-    }
-}
-
 /// Returns pairs of solid components that touch or cross each other. Each component that does is in a
 /// pair.
 fn contacts(
@@ -379,54 +336,59 @@ fn contacts(
     agreement: &Agreement,
     is_solid: impl Fn(usize) -> bool,
 ) -> Vec<(usize, usize)> {
-    let component = |triangle: &FaceTriangle<FaceId>| agreement.component(triangle.face);
-    let mut triangles = index.items().to_vec();
-    triangles.sort_by_key(component);
-    let solid = triangles.chunk_by(|a, b| component(a) == component(b));
-    let solid: Vec<Component<'_>> = solid
-        .filter(|triangles| is_solid(component(&triangles[0])))
-        .map(|triangles| Component {
-            triangles,
-            index: OnceCell::new(),
-        })
-        .collect();
-    let boxes = solid.iter().enumerate();
-    let boxes = boxes.map(|(name, one)| TurnedBox::around(name, one.triangles.iter()));
-    let boxes: Vec<TurnedBox<usize>> = boxes.collect();
-    let Ok(tree) = Bvh::build(boxes.clone()) else {
-        return Vec::new();
-    };
-    let mut is_touching = vec![false; solid.len()];
-    let mut pairs = Vec::new();
-    let mut near = Vec::new();
-    for own in 0..solid.len() {
-        // A component that touches none yet finds those that it touches itself.
-        if is_touching[own] {
-            continue;
-        }
-        near.clear();
-        tree.visit_meeting(&boxes[own], 0.0, |slot| {
-            let other = tree.items()[slot].name;
-            // Earlier ones that touch none were compared with this one.
-            if (other > own || is_touching[other]) && boxes[own].meets(&boxes[other]) {
-                near.push(other);
-            }
-            ControlFlow::Continue(())
-        });
-        near.sort_unstable();
-        let found = near
-            .iter()
-            .find(|&&other| solid[own].touches(&solid[other]));
-        if let Some(&other) = found {
-            (is_touching[own], is_touching[other]) = (true, true);
-            pairs.push((own, other));
+    let component = |slot: usize| agreement.component(index.items()[slot].face);
+    // By slot: the end of the slots that follow it and have the same component.
+    let mut ends: Vec<u32> = (1..=row(index.items().len())).collect();
+    for slot in (1..ends.len()).rev() {
+        if component(slot - 1) == component(slot) {
+            ends[slot - 1] = ends[slot];
         }
     }
-    let name = |number: usize| component(&solid[number].triangles[0]);
+    let mut slots: Vec<usize> = (0..ends.len()).collect();
+    slots.sort_by_key(|&slot| component(slot));
+    let components = agreement.conflicts.len();
+    let mut boxes: Vec<Option<TurnedBox<()>>> = vec![None; components];
+    for own in slots.chunk_by(|&a, &b| component(a) == component(b)) {
+        let triangles = own.iter().map(|&slot| &index.items()[slot]);
+        boxes[component(own[0])] = Some(TurnedBox::around((), triangles));
+    }
+    // By component: the one with which its box was compared last, and whether the boxes meet.
+    let mut compared = vec![(usize::MAX, false); components];
+    let mut touching = vec![false; components];
+    let mut pairs = Vec::new();
+    for same in slots.chunk_by(|&a, &b| component(a) == component(b)) {
+        let own = component(same[0]);
+        for &slot in same {
+            // A component that touches none yet finds those that it touches by its own triangles.
+            if touching[own] || !is_solid(own) {
+                break;
+            }
+            let triangle = &index.items()[slot];
+            let corners = triangle.corners_f64();
+            let skips = |slots: Range<usize>| {
+                component(slots.start) == own && ends[slots.start] as usize >= slots.end
+            };
+            index.visit_meeting(triangle, 0.0, skips, |slot| {
+                let near = &index.items()[slot];
+                let other = component(slot);
+                if own == other || !near.bounds().meets(&triangle.bounds()) || !is_solid(other) {
+                    return ControlFlow::Continue(());
+                }
+                if compared[other].0 != own {
+                    let both = boxes[own].zip(boxes[other]);
+                    compared[other] = (own, both.is_none_or(|(own, other)| own.meets(&other)));
+                }
+                if compared[other].1 && triangles_touch(corners, near.corners_f64()) {
+                    touching[own] = true;
+                    touching[other] = true;
+                    pairs.push((own, other));
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
+            });
+        }
+    }
     pairs
-        .into_iter()
-        .map(|(one, other)| (name(one), name(other)))
-        .collect()
 }
 
 /// Returns the number of components around each solid one, or one around it that touches another; `None`
