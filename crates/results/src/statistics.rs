@@ -93,14 +93,15 @@ impl Median {
         })
     }
 
-    /// Returns this median with `value`, and with an interval of the same relative width.
+    /// Returns this median with `value`, and with an interval of the same relative width. The least value is
+    /// not above it, also if both differ only by rounding.
     pub fn moved_to(self, value: f64) -> Self {
         let factor = value / self.value;
         let interval = self.interval.map(|ends| ends.map(|end| end * factor));
         Self {
             value,
+            least: self.least.min(value),
             interval: interval.filter(|_| factor.is_finite()),
-            ..self
         }
     }
 

@@ -75,6 +75,7 @@ mod sampling;
 mod surface_queries;
 mod tree;
 mod triangle;
+mod turned_box;
 
 pub use bounds::Bounds;
 pub use contact::triangles_touch;
@@ -92,3 +93,4 @@ pub use sampling::Sampling;
 pub use surface_queries::{RayHit, SearchHint, SurfacePoint, SurfaceQueries};
 pub use tree::{Bvh, KdTree, Octree, SplitByArea, SplitByMedian, SplitByOctants, SplitRule, Tree};
 pub use triangle::closest_point_on_triangle;
+pub use turned_box::TurnedBox;

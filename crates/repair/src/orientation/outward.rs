@@ -5,7 +5,8 @@ use std::ops::{ControlFlow, Range};
 use glam::{DMat3, DVec3};
 use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId, row};
 use sixfold_spatial::{
-    Bounds, Bvh, FaceTriangle, Item, NamedBox, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
+    Bounds, Bvh, FaceTriangle, Item, NamedBox, Ray, SpatialIndex, SurfaceQueries, TurnedBox,
+    triangles_touch,
 };
 
 use super::{Agreement, UndecidedReason};
@@ -335,43 +336,57 @@ fn contacts(
     agreement: &Agreement,
     is_solid: impl Fn(usize) -> bool,
 ) -> Vec<(usize, usize)> {
-    let mut touching = vec![false; agreement.conflicts.len()];
-    let mut pairs = Vec::new();
+    let component = |slot: usize| agreement.component(index.items()[slot].face);
     // By slot: the end of the slots that follow it and have the same component.
     let mut ends: Vec<u32> = (1..=row(index.items().len())).collect();
     for slot in (1..ends.len()).rev() {
-        let [before, here] =
-            [slot - 1, slot].map(|slot| agreement.component(index.items()[slot].face));
-        if before == here {
+        if component(slot - 1) == component(slot) {
             ends[slot - 1] = ends[slot];
         }
     }
-    for triangle in index.items() {
-        let own = agreement.component(triangle.face);
-        // A component that touches none yet finds those that it touches by its own triangles.
-        if touching[own] || !is_solid(own) {
-            continue;
-        }
-        let corners = triangle.corners_f64();
-        let skips = |slots: Range<usize>| {
-            agreement.component(index.items()[slots.start].face) == own
-                && ends[slots.start] as usize >= slots.end
-        };
-        index.visit_meeting(triangle, 0.0, skips, |slot| {
-            let near = &index.items()[slot];
-            let other = agreement.component(near.face);
-            if own != other
-                && near.bounds().meets(&triangle.bounds())
-                && is_solid(other)
-                && triangles_touch(corners, near.corners_f64())
-            {
-                touching[own] = true;
-                touching[other] = true;
-                pairs.push((own, other));
-                return ControlFlow::Break(());
+    let mut slots: Vec<usize> = (0..ends.len()).collect();
+    slots.sort_by_key(|&slot| component(slot));
+    let components = agreement.conflicts.len();
+    let mut boxes: Vec<Option<TurnedBox<()>>> = vec![None; components];
+    for own in slots.chunk_by(|&a, &b| component(a) == component(b)) {
+        let triangles = own.iter().map(|&slot| &index.items()[slot]);
+        boxes[component(own[0])] = Some(TurnedBox::around((), triangles));
+    }
+    // By component: the one with which its box was compared last, and whether the boxes meet.
+    let mut compared = vec![(usize::MAX, false); components];
+    let mut touching = vec![false; components];
+    let mut pairs = Vec::new();
+    for same in slots.chunk_by(|&a, &b| component(a) == component(b)) {
+        let own = component(same[0]);
+        for &slot in same {
+            // A component that touches none yet finds those that it touches by its own triangles.
+            if touching[own] || !is_solid(own) {
+                break;
             }
-            ControlFlow::Continue(())
-        });
+            let triangle = &index.items()[slot];
+            let corners = triangle.corners_f64();
+            let skips = |slots: Range<usize>| {
+                component(slots.start) == own && ends[slots.start] as usize >= slots.end
+            };
+            index.visit_meeting(triangle, 0.0, skips, |slot| {
+                let near = &index.items()[slot];
+                let other = component(slot);
+                if own == other || !near.bounds().meets(&triangle.bounds()) || !is_solid(other) {
+                    return ControlFlow::Continue(());
+                }
+                if compared[other].0 != own {
+                    let both = boxes[own].zip(boxes[other]);
+                    compared[other] = (own, both.is_none_or(|(own, other)| own.meets(&other)));
+                }
+                if compared[other].1 && triangles_touch(corners, near.corners_f64()) {
+                    touching[own] = true;
+                    touching[other] = true;
+                    pairs.push((own, other));
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
+            });
+        }
     }
     pairs
 }

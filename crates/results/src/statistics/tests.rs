@@ -399,3 +399,12 @@ fn intervals_of_geometric_means_contain_the_mean_of_all_meshes() {
     }
     assert_eq!(geometric_mean(&[2.0, 8.0]), Some((4.0, None)));
 }
+
+#[test]
+fn a_median_that_is_corrected_is_not_below_the_least_value() {
+    let raw = Median::from_samples([3.0, 3.0, 4.0]).expect("samples");
+    for (value, least) in [(2.999_999, 2.999_999), (3.5, 3.0)] {
+        let moved = raw.moved_to(value);
+        assert_eq!((moved.value, moved.least), (value, least));
+    }
+}

@@ -12,6 +12,7 @@ use glam::{DMat3, DVec3};
 use super::build::BoxedItem;
 use crate::bounds::Bounds;
 use crate::item::Item;
+use crate::turned_box::axes_along;
 
 /// Nodes with at most this number of items are not divided again.
 pub(super) const FEW: usize = 16;
@@ -57,24 +58,11 @@ impl Sizes {
 /// Returns axes along which the items of a node may have smaller boxes: along their longest side, and
 /// along the side that is longest across it. `None` if the sides are on one line.
 pub(super) fn other_axes<I: Item>(boxed: &[BoxedItem], items: &[I]) -> Option<DMat3> {
-    let sides = || {
+    axes_along(|| {
         boxed
             .iter()
             .flat_map(|boxed| items[boxed.item as usize].sides())
-    };
-    let longest = |length: &dyn Fn(DVec3) -> f64| {
-        sides().fold(DVec3::ZERO, |best, side| {
-            match length(side) > length(best) {
-                true => side,
-                false => best,
-            }
-        })
-    };
-    let first = longest(&|side| side.length_squared()).try_normalize()?;
-    let across = |side: DVec3| side - first * first.dot(side);
-    let second = across(longest(&|side| across(side).length_squared())).try_normalize()?;
-    // Rows, so that a product with a point has its coordinates along the axes.
-    Some(DMat3::from_cols(first, second, first.cross(second)).transpose())
+    })
 }
 
 /// Returns whether other parts are used: `before` and `after` are the sums of the sizes of the parts.
