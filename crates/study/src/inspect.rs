@@ -102,29 +102,31 @@ impl StudyMesh {
 /// each vertex, and for each face the number of corners and the vertices of the corners.
 fn content_hash(polygons: &PolygonMesh) -> String {
     let mut hash = Sha256::new();
-    let mut bytes: Vec<u8> = Vec::with_capacity(HASH_BLOCK + 64);
-    bytes.extend((polygons.vertex_count() as u32).to_le_bytes());
+    let mut block = vec![0; HASH_BLOCK];
+    let mut length = 0;
+    // This crate is compiled for size, so the loop is written without iterators that would be called.
+    let mut push = |number: [u8; 4]| {
+        block[length..length + 4].copy_from_slice(&number);
+        length += 4;
+        if length == HASH_BLOCK {
+            hash.update(&block);
+            length = 0;
+        }
+    };
+    push((polygons.vertex_count() as u32).to_le_bytes());
     for position in polygons.positions() {
-        bytes.extend(position.to_array().into_iter().flat_map(f32::to_le_bytes));
-        flush(&mut hash, &mut bytes, HASH_BLOCK);
-    }
-    for (_, face) in polygons.faces().iter() {
-        bytes.extend((face.len() as u32).to_le_bytes());
-        for &vertex in face {
-            bytes.extend((vertex.index() as u32).to_le_bytes());
-            flush(&mut hash, &mut bytes, HASH_BLOCK);
+        for coordinate in position.to_array() {
+            push(coordinate.to_le_bytes());
         }
     }
-    flush(&mut hash, &mut bytes, 0);
-    hex(&hash.finalize())
-}
-
-/// Hashes and clears `bytes` if its length is at least `least`.
-fn flush(hash: &mut Sha256, bytes: &mut Vec<u8>, least: usize) {
-    if bytes.len() >= least {
-        hash.update(&*bytes);
-        bytes.clear();
+    for (_, face) in polygons.faces().iter() {
+        push((face.len() as u32).to_le_bytes());
+        for &vertex in face {
+            push((vertex.index() as u32).to_le_bytes());
+        }
     }
+    hash.update(&block[..length]);
+    hex(&hash.finalize())
 }
 
 /// Returns the SHA-256 of all bytes that `reader` returns, as 64 hexadecimal digits.
