@@ -186,3 +186,37 @@ pub(crate) fn corners_from<M: MeshEdit>(mesh: &M, f: M::Face, v: M::Vertex) -> [
         [c, a, b]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use sixfold_core::{MeshQuery, PolygonMesh, Representation};
+    use sixfold_half_edge::EditableHalfEdgeMesh;
+
+    use super::*;
+
+    /// Two cones over one rim: their tips have very many edges.
+    #[test]
+    fn edges_are_found_around_vertices_with_many_edges() {
+        let n = 3 * FEW_EDGES as u32;
+        let rim = (0..n).map(|i| {
+            let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos();
+            Point::new(cos as f32, sin as f32, 0.0)
+        });
+        let tips = [Point::Z, -Point::Z];
+        let sides = (0..n).map(|i| [i, (i + 1) % n]);
+        let faces = sides.flat_map(|[a, b]| [[a, b, n], [b, a, n + 1]]);
+        let points: Vec<Point> = rim.chain(tips).collect();
+        let polygons = PolygonMesh::new(points, faces).expect("two cones");
+        let mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
+        let numbering = Numbering::new(&mesh).expect("triangles");
+        let valences = numbering.valences(&mesh);
+        for a in 0..n + 2 {
+            let v = numbering.handle(a);
+            assert_eq!(valences[a as usize] as usize, mesh.vertex_edges(v).count());
+            for b in (0..n + 2).filter(|&b| b != a) {
+                let expected = mesh.edge_between(v, numbering.handle(b));
+                assert_eq!(numbering.edge(&mesh, [a, b]), expected, "{a} {b}");
+            }
+        }
+    }
+}

@@ -71,7 +71,8 @@ pub type Bvh<I> = Tree<I, SplitByArea, 4>;
 ///
 /// # Memory
 ///
-/// `W` · 28 + 8 bytes per node, 72 for axes of its own, and the items: about 22 bytes per vertex and 60 per triangle. While a
+/// `W` · 28 + 8 bytes per node, 72 for axes of its own, and the items: about 22 bytes per vertex and 60
+/// per triangle. While a
 /// tree is built, 32 bytes per item more, and the items twice.
 ///
 /// # Complexity
@@ -143,25 +144,35 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
 
 impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
     /// Calls `visit` with the slots of items until it breaks, among them each that has a point within `reach`
-    /// of a point of `shape` along all coordinate axes. Nodes are left out if `skips` returns true for the
-    /// range of their slots.
+    /// of a point of `shape` along all coordinate axes.
     ///
     /// Visits O(log n) nodes, and the items found, for items that are spread evenly.
     pub fn visit_meeting(
         &self,
         shape: &impl Item,
         reach: f32,
-        skips: impl Fn(Range<usize>) -> bool,
+        visit: impl FnMut(usize) -> ControlFlow<()>,
+    ) {
+        self.visit_meeting_where(shape, reach, |_| true, visit);
+    }
+
+    /// Visits items like [`visit_meeting`](Self::visit_meeting), without the nodes whose slots are a range that
+    /// `accepts` does not accept.
+    pub fn visit_meeting_where(
+        &self,
+        shape: &impl Item,
+        reach: f32,
+        accepts: impl Fn(Range<usize>) -> bool,
         mut visit: impl FnMut(usize) -> ControlFlow<()>,
     ) {
         // Along other axes, points are at most this far apart.
-        let turned = reach * 3_f32.sqrt().next_up();
+        let turned_reach = reach * 3_f32.sqrt().next_up();
         // A child, and the slot after its last.
         let mut stack: SmallVec<[(Child, usize); 64]> = SmallVec::new();
         if !self.nodes.is_empty() {
             stack.push((Child::ROOT, self.items.len()));
         }
-        while let Some((child, end)) = stack.pop() {
+        while let Some((child, mut end)) = stack.pop() {
             if let Some(mut slots) = child.slots() {
                 if slots.try_for_each(&mut visit).is_break() {
                     return;
@@ -170,18 +181,13 @@ impl<I: Item, R: SplitRule, const W: usize> Tree<I, R, W> {
             }
             let node = &self.nodes[child.node()];
             let axes = node.axes().map(|axes| &self.axes[axes]);
-            let mut end = end;
+            let reach = if axes.is_some() { turned_reach } else { reach };
             for lane in (0..node.children()).rev() {
                 let child = node.child(lane);
-                let first = self.first_slot(child);
-                let slots = first..std::mem::replace(&mut end, first);
-                if shape.may_meet(
-                    axes,
-                    &node
-                        .bounds(lane)
-                        .widened(if axes.is_some() { turned } else { reach }),
-                ) && !skips(slots.clone())
-                {
+                let slots = self.first_slot(child)..end;
+                end = slots.start;
+                let is_near = shape.may_meet(axes, &node.bounds(lane).widened(reach));
+                if is_near && accepts(slots.clone()) {
                     stack.push((child, slots.end));
                 }
             }

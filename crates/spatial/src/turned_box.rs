@@ -1,6 +1,6 @@
 //! Boxes along any axes.
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3};
 
 use crate::bounds::Bounds;
 use crate::item::Item;
@@ -9,103 +9,46 @@ use crate::item::Item;
 const ROUNDING: f64 = 1e-12;
 
 /// A box around a part of a mesh, along the longest sides of the part: long thin parts have thin boxes in
-/// all directions (Gottschalk, Lin & Manocha 1996). `N` is any name.
+/// all directions (Gottschalk, Lin & Manocha 1996).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TurnedBox<N> {
-    /// The name of what is in the box.
-    pub name: N,
-    /// The axes, as rows.
+pub struct TurnedBox {
+    /// The axes, as columns.
     axes: DMat3,
     centre: DVec3,
     /// Half of the lengths along the axes.
     half: DVec3,
-    /// The box along the coordinate axes around the part.
-    bounds: Bounds,
 }
 
-impl<N> TurnedBox<N> {
+impl TurnedBox {
     /// Returns the box around items; they must be finite.
-    pub fn around<'i, I: Item + 'i>(name: N, items: impl Iterator<Item = &'i I> + Clone) -> Self {
+    pub fn around<'i, I: Item + 'i>(items: impl Iterator<Item = &'i I> + Clone) -> Self {
         let axes = axes_along(|| items.clone().flat_map(Item::sides)).unwrap_or(DMat3::IDENTITY);
-        let around = |bounds_of: &dyn Fn(&I) -> Bounds| {
-            let bounds = items.clone().map(bounds_of);
-            bounds.fold(Bounds::EMPTY, Bounds::union)
-        };
-        let along = around(&|item| item.bounds_along(&axes));
+        let along = items.map(|item| item.bounds_along(&axes));
+        let along = along.fold(Bounds::EMPTY, Bounds::union);
         let [low, high] = [along.low.as_dvec3(), along.high.as_dvec3()];
+        let axes = axes.transpose();
         Self {
-            name,
-            centre: axes.transpose() * (0.5 * (low + high)),
-            half: 0.5 * (high - low),
-            bounds: around(&Item::bounds),
             axes,
+            centre: axes * (0.5 * (low + high)),
+            half: 0.5 * (high - low),
         }
     }
 
     /// Returns whether the boxes may have a common point; never false if they have one. Compares them along
     /// the axes of both and across each pair of axes.
-    pub fn meets<M>(&self, other: &TurnedBox<M>) -> bool {
-        self.meets_box(&self.edges(), other.centre, &other.edges(), other.half)
-    }
-
-    /// Returns the axes as columns.
-    fn edges(&self) -> DMat3 {
-        self.axes.transpose()
-    }
-
-    fn meets_box(&self, own: &DMat3, centre: DVec3, others: &DMat3, half: DVec3) -> bool {
-        let between = centre - self.centre;
-        let size = between.abs().max_element() + self.half.max_element() + half.max_element();
+    pub fn meets(&self, other: &Self) -> bool {
+        let between = other.centre - self.centre;
+        let size = between.abs().max_element() + self.half.max_element() + other.half.max_element();
         let separates = |axis: DVec3| {
-            let reach = |axes: &DMat3, half: DVec3| {
-                let along = |i: usize| half[i] * axis.dot(axes.col(i)).abs();
+            let reach = |turned: &Self| {
+                let along = |i: usize| turned.half[i] * axis.dot(turned.axes.col(i)).abs();
                 along(0) + along(1) + along(2)
             };
-            let reach = reach(own, self.half) + reach(others, half) + ROUNDING * size;
-            axis.dot(between).abs() > reach
+            axis.dot(between).abs() > reach(self) + reach(other) + ROUNDING * size
         };
-        let axes = (0..3).flat_map(|i| [own.col(i), others.col(i)]);
-        let across = (0..9).map(|i| own.col(i / 3).cross(others.col(i % 3)));
+        let axes = (0..3).flat_map(|i| [self.axes.col(i), other.axes.col(i)]);
+        let across = (0..9).map(|i| self.axes.col(i / 3).cross(other.axes.col(i % 3)));
         !axes.chain(across).any(separates)
-    }
-}
-
-impl<N: Copy + Send + Sync> Item for TurnedBox<N> {
-    fn bounds(&self) -> Bounds {
-        self.bounds
-    }
-
-    fn bounds_along(&self, axes: &DMat3) -> Bounds {
-        let edges = self.edges();
-        let (centre, turned) = (*axes * self.centre, *axes * edges);
-        let along = |i: usize| turned.col(i).abs() * self.half[i];
-        let reach = along(0) + along(1) + along(2);
-        let error = ROUNDING * (self.centre.abs().max_element() + self.half.max_element());
-        Bounds {
-            low: (centre - reach - error).as_vec3().map(f32::next_down),
-            high: (centre + reach + error).as_vec3().map(f32::next_up),
-        }
-    }
-
-    fn may_meet(&self, axes: Option<&DMat3>, bounds: &Bounds) -> bool {
-        let own = axes.map_or(self.bounds, |axes| self.bounds_along(axes));
-        if !own.meets(bounds) {
-            return false;
-        }
-        let [low, high] = [bounds.low.as_dvec3(), bounds.high.as_dvec3()];
-        let edges = axes.map_or(DMat3::IDENTITY, DMat3::transpose);
-        let centre = edges * (0.5 * (low + high));
-        self.meets_box(&self.edges(), centre, &edges, 0.5 * (high - low))
-    }
-
-    fn sides(&self) -> impl Iterator<Item = DVec3> {
-        let edges = self.edges();
-        let half = self.half;
-        (0..3).map(move |i| edges.col(i) * (2.0 * half[i]))
-    }
-
-    fn is_finite(&self) -> bool {
-        self.centre.is_finite() && self.half.is_finite() && Vec3::is_finite(self.bounds.low)
     }
 }
 
@@ -128,6 +71,7 @@ pub(crate) fn axes_along<S: Iterator<Item = DVec3>>(sides: impl Fn() -> S) -> Op
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
     use proptest::prelude::*;
 
     use super::*;
@@ -157,12 +101,10 @@ mod tests {
             for triangle in &mut other {
                 triangle.corners = triangle.corners.map(|corner| corner + shift);
             }
-            let [a, b] = [&one, &other].map(|list| TurnedBox::around((), list.iter()));
+            let [a, b] = [&one, &other].map(|list| TurnedBox::around(list.iter()));
             // The common point is rounded.
             let near = TurnedBox { half: a.half + 1e-5, ..a };
             prop_assert!(near.meets(&b) && b.meets(&near));
-            prop_assert!(a.may_meet(None, &b.bounds().widened(1e-5)));
-            prop_assert!(a.may_meet(Some(&b.axes), &b.bounds_along(&b.axes).widened(1e-5)));
         }
     }
 
@@ -171,11 +113,10 @@ mod tests {
         let needle = |from: [f32; 3], to: [f32; 3]| {
             let [from, to] = [from, to].map(Vec3::from_array);
             let corners = [from, to, from + Vec3::splat(0.01)];
-            TurnedBox::around((), [FaceTriangle { face: 0, corners }].iter())
+            TurnedBox::around([FaceTriangle { face: 0, corners }].iter())
         };
         let one = needle([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]);
         let other = needle([-1.0, 1.0, 0.2], [1.0, -1.0, 0.2]);
-        assert!(one.bounds().widened(0.2).meets(&other.bounds()));
         assert!(!one.meets(&other) && one.meets(&one));
         let through = needle([-1.0, 1.0, 0.0], [1.0, -1.0, 0.0]);
         assert!(one.meets(&through));

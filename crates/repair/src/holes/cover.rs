@@ -154,8 +154,7 @@ fn find_near<F: Copy + Send + Sync>(
     let reach = ((reach + rounding) as f32).next_up();
     let shape = FaceTriangle { face: (), corners };
     near.clear();
-    let none = |_| false;
-    index.visit_meeting(&shape, reach, none, |slot| {
+    index.visit_meeting(&shape, reach, |slot| {
         if shape.may_meet(None, &index.items()[slot].bounds().widened(reach)) {
             near.push(slot);
         }
@@ -272,8 +271,7 @@ impl<'a> Patches<'a> {
                     high: (patch.high + patch.reach).as_vec3().map(f32::next_up),
                 },
             };
-            let none = |_| false;
-            boxes.visit_meeting(&around, 0.0, none, |slot| {
+            boxes.visit_meeting(&around, 0.0, |slot| {
                 let other = &boxes.items()[slot];
                 if other.bounds.meets(&around.bounds) {
                     near.push(other.name);

@@ -292,8 +292,7 @@ fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
         if found[one.name] {
             continue;
         }
-        let none = |_| false;
-        index.visit_meeting(one, 0.0, none, |slot| {
+        index.visit_meeting(one, 0.0, |slot| {
             let other = &index.items()[slot];
             if other.name == one.name || !other.bounds.meets(&one.bounds) {
                 return ControlFlow::Continue(());
@@ -347,10 +346,10 @@ fn contacts(
     let mut slots: Vec<usize> = (0..ends.len()).collect();
     slots.sort_by_key(|&slot| component(slot));
     let components = agreement.conflicts.len();
-    let mut boxes: Vec<Option<TurnedBox<()>>> = vec![None; components];
+    let mut boxes: Vec<Option<TurnedBox>> = vec![None; components];
     for own in slots.chunk_by(|&a, &b| component(a) == component(b)) {
         let triangles = own.iter().map(|&slot| &index.items()[slot]);
-        boxes[component(own[0])] = Some(TurnedBox::around((), triangles));
+        boxes[component(own[0])] = Some(TurnedBox::around(triangles));
     }
     // By component: the one with which its box was compared last, and whether the boxes meet.
     let mut compared = vec![(usize::MAX, false); components];
@@ -365,10 +364,10 @@ fn contacts(
             }
             let triangle = &index.items()[slot];
             let corners = triangle.corners_f64();
-            let skips = |slots: Range<usize>| {
-                component(slots.start) == own && ends[slots.start] as usize >= slots.end
+            let has_others = |slots: Range<usize>| {
+                component(slots.start) != own || (ends[slots.start] as usize) < slots.end
             };
-            index.visit_meeting(triangle, 0.0, skips, |slot| {
+            index.visit_meeting_where(triangle, 0.0, has_others, |slot| {
                 let near = &index.items()[slot];
                 let other = component(slot);
                 if own == other || !near.bounds().meets(&triangle.bounds()) || !is_solid(other) {

@@ -33,18 +33,27 @@ impl Rule for SplitByArea {
     }
 
     fn divide(items: &mut [BoxedItem], depth: u32, width: usize) -> Parts<u32> {
-        if depth >= DEEPEST {
-            let length = |items: &[BoxedItem]| items.len() as f64;
-            return divide_by_halves(items, depth + 1, width, length, median::halve);
-        }
-        let area = |items: &[BoxedItem]| bounds_of(items).half_area();
-        divide_by_halves(items, depth + 1, width, area, cheapest)
+        divide_by(items, depth, width, cheapest)
     }
 
     fn divide_again(items: &mut [BoxedItem], depth: u32, width: usize) -> Parts<u32> {
-        let area = |items: &[BoxedItem]| bounds_of(items).half_area();
-        divide_by_halves(items, depth + 1, width, area, cheapest_of_all)
+        divide_by(items, depth, width, cheapest_of_all)
     }
+}
+
+/// Divides items by the surfaces of the parts, above the depth at which the median bounds the time.
+fn divide_by(
+    items: &mut [BoxedItem],
+    depth: u32,
+    width: usize,
+    divide: fn(&mut [BoxedItem]) -> usize,
+) -> Parts<u32> {
+    if depth >= DEEPEST {
+        let length = |items: &[BoxedItem]| items.len() as f64;
+        return divide_by_halves(items, depth + 1, width, length, median::halve);
+    }
+    let area = |items: &[BoxedItem]| bounds_of(items).half_area();
+    divide_by_halves(items, depth + 1, width, area, divide)
 }
 
 /// The items whose middle is in one bin.
