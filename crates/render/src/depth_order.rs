@@ -47,12 +47,12 @@ pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool])
             position: panel.position(v),
             normal: glam::DVec3::Z,
         }));
-        rasteriser.rasterise(&corners, |sample| {
-            layers.push(Layer {
-                pixel: row(sample.row * panel.width + sample.column),
-                depth: sample.depth as f32,
+        rasteriser.rasterise(&corners, |span| {
+            layers.extend(span.columns.clone().map(|column| Layer {
+                pixel: row(span.row * panel.width + column),
+                depth: span.depth(column) as f32,
                 face: row(rank),
-            });
+            }));
         });
     }
     layers.sort_by(|a, b| {

@@ -28,6 +28,7 @@ mod samples;
 mod settings;
 mod strokes;
 mod svg;
+mod tiles;
 
 pub use error::{MeshFault, RenderError};
 pub use limits::{MAX_LABELS, MAX_PIXELS, MAX_SIDE, MAX_SVG_FACES, MIN_PANEL};

@@ -13,13 +13,33 @@ pub(crate) struct Corner {
     pub(crate) normal: DVec3,
 }
 
-/// A sample inside a polygon.
-pub(crate) struct Sample {
-    pub(crate) column: usize,
+/// The samples of one row between two sides of a polygon.
+pub(crate) struct Span {
     pub(crate) row: usize,
-    /// Coordinate towards the viewer, in samples.
-    pub(crate) depth: f64,
-    pub(crate) normal: DVec3,
+    pub(crate) columns: Range<usize>,
+    /// The points on the sides, from left to right.
+    ends: [Corner; 2],
+}
+
+impl Span {
+    /// Returns the part between the sides where the middle of a column is.
+    fn part(&self, column: usize) -> f64 {
+        let [left, right] = self.ends.map(|end| end.position.x);
+        (column as f64 + 0.5 - left) / (right - left)
+    }
+
+    /// Returns the coordinate towards the viewer, in samples.
+    pub(crate) fn depth(&self, column: usize) -> f64 {
+        let [from, to] = self.ends.map(|end| end.position.z);
+        let part = self.part(column);
+        from * (1.0 - part) + to * part
+    }
+
+    /// Returns the surface normal, of any length.
+    pub(crate) fn normal(&self, column: usize) -> DVec3 {
+        let [from, to] = self.ends;
+        from.normal.lerp(to.normal, self.part(column))
+    }
 }
 
 /// The point where a side crosses the middle of a row.
@@ -55,8 +75,8 @@ impl Rasteriser {
         }
     }
 
-    /// Calls `emit` with every sample inside the polygon; O(crossings · log + samples).
-    pub(crate) fn rasterise(&mut self, corners: &[Corner], mut emit: impl FnMut(Sample)) {
+    /// Calls `emit` with the samples inside the polygon, row by row; O(crossings · log).
+    pub(crate) fn rasterise(&mut self, corners: &[Corner], mut emit: impl FnMut(&Span)) {
         /// Maximum number of crossings in memory, unless one row has more.
         const MAX_CROSSINGS: usize = 1 << 16;
         let heights = corners.iter().map(|corner| corner.position.y);
@@ -98,20 +118,15 @@ impl Rasteriser {
     }
 
     /// Fills between each pair of crossings of a row.
-    fn emit_spans(&self, emit: &mut impl FnMut(Sample)) {
+    fn emit_spans(&self, emit: &mut impl FnMut(&Span)) {
         for pair in self.crossings.chunks_exact(2) {
-            let [from, to] = [pair[0], pair[1]];
-            let (left, right) = (from.corner.position.x, to.corner.position.x);
-            for column in samples_between(left, right, self.columns) {
-                let t = (column as f64 + 0.5 - left) / (right - left);
-                let corner = from.corner.interpolate(to.corner, t);
-                emit(Sample {
-                    column,
-                    row: from.row,
-                    depth: corner.position.z,
-                    normal: corner.normal,
-                });
-            }
+            let ends = [pair[0].corner, pair[1].corner];
+            let [left, right] = ends.map(|end| end.position.x);
+            emit(&Span {
+                row: pair[0].row,
+                columns: samples_between(left, right, self.columns),
+                ends,
+            });
         }
     }
 }
@@ -148,13 +163,15 @@ mod tests {
                     normal: DVec3::Z,
                 })
                 .collect();
-            rasteriser.rasterise(&corners, |sample| {
-                counts[sample.row][sample.column] += 1;
-                let (x, y) = (sample.column as f64 + 0.5, sample.row as f64 + 0.5);
-                assert!(
-                    (sample.depth - x - 2.0 * y).abs() < 1e-9,
-                    "the depth is interpolated linearly"
-                );
+            rasteriser.rasterise(&corners, |span| {
+                for column in span.columns.clone() {
+                    counts[span.row][column] += 1;
+                    let (x, y) = (column as f64 + 0.5, span.row as f64 + 0.5);
+                    assert!(
+                        (span.depth(column) - x - 2.0 * y).abs() < 1e-9,
+                        "the depth is interpolated linearly"
+                    );
+                }
             });
         }
         let digits = |row: [i32; 8]| row.map(|n| n.to_string()).concat().replace('0', ".");

@@ -5,10 +5,11 @@ use sixfold_core::{FaceId, RowId, Slot};
 
 use crate::error::RenderError;
 use crate::layout::Panel;
-use crate::light::{Colour, Seen, shade};
+use crate::light::{Colour, shade};
 use crate::normals::Normals;
-use crate::rasterise::{Corner, Rasteriser, Sample};
+use crate::rasterise::{Corner, Rasteriser, Span};
 use crate::settings::RenderMesh;
+use crate::tiles::Tiles;
 
 /// The samples of one panel. Each pixel has `per_side` × `per_side` samples.
 ///
@@ -32,7 +33,8 @@ pub(crate) struct Samples {
 const FULL_LIGHT: f64 = 65535.0;
 
 impl Samples {
-    /// Draws the faces of `render_mesh`; O(corners + samples covered).
+    /// Draws the faces of `render_mesh`; O(corners + samples covered). Faces that cover many samples are
+    /// drawn from the front to the back, and without the parts behind others.
     ///
     /// # Errors
     ///
@@ -42,19 +44,40 @@ impl Samples {
         panel: &Panel,
         normals: &Normals,
     ) -> Result<Self, RenderError> {
+        /// Samples of the box around a large face: four tiles.
+        const LARGE: f64 = 4096.0;
         let mut samples = Self::empty(panel)?;
+        let mut tiles = Tiles::new(samples.columns, samples.rows)?;
         let mut rasteriser = Rasteriser::new(samples.columns, samples.rows);
         let per_side = samples.per_side as f64;
+        let position = |v| panel.position(v) * per_side;
+        let faces = render_mesh.mesh.faces();
         let mut corners = Vec::new();
-        for (f, face) in render_mesh.mesh.faces().iter() {
-            let of_corners = &normals.corners[render_mesh.mesh.faces().range(f)];
-            let seen = normals.seen(f);
+        let mut draw = |f, samples: &mut Self, tiles: &mut Tiles| {
+            let of_corners = faces.face(f).iter().zip(&normals.corners[faces.range(f)]);
             corners.clear();
-            corners.extend(face.iter().zip(of_corners).map(|(&v, &normal)| Corner {
-                position: panel.position(v) * per_side,
+            corners.extend(of_corners.map(|(&v, &normal)| Corner {
+                position: position(v),
                 normal,
             }));
-            rasteriser.rasterise(&corners, |sample| samples.store_if_nearer(f, &sample, seen));
+            rasteriser.rasterise(&corners, |span| samples.draw(span, f, normals, tiles));
+        };
+        let mut large = Vec::new();
+        for (f, face) in faces.iter() {
+            let corners = || face.iter().map(|&v| position(v));
+            let low = corners().fold(DVec3::INFINITY, DVec3::min);
+            let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+            if (high - low).truncate().element_product() < LARGE {
+                draw(f, &mut samples, &mut tiles);
+            } else {
+                large.push((f, low, high, nearest(high.z)));
+            }
+        }
+        large.sort_by(|one, other| other.3.total_cmp(&one.3));
+        for (f, low, high, nearest) in large {
+            if tiles.update(low.truncate(), high.truncate(), nearest, &samples.depths) {
+                draw(f, &mut samples, &mut tiles);
+            }
         }
         Ok(samples)
     }
@@ -78,14 +101,32 @@ impl Samples {
         })
     }
 
-    fn store_if_nearer(&mut self, face: FaceId, sample: &Sample, seen: Seen) {
-        let at = sample.row * self.columns + sample.column;
-        let depth = sample.depth as f32;
-        if depth > self.depths[at] {
-            self.depths[at] = depth;
-            self.faces[at] = Slot::some(face);
-            let light = shade(sample.normal, seen).0.to_array();
-            self.lights[at] = light.map(|light| (light * FULL_LIGHT).round() as u16);
+    /// Draws a row of a face where it is nearer than what was drawn before; of two faces at the same depth,
+    /// the first one is seen.
+    fn draw(&mut self, span: &Span, face: FaceId, normals: &Normals, tiles: &mut Tiles) {
+        for columns in Tiles::parts(span.columns.clone()) {
+            let first = [span.row, columns.start];
+            let depths = || [columns.start, columns.end - 1].map(|column| span.depth(column));
+            let nearest = || nearest(depths()[0].max(depths()[1]));
+            if tiles.hides(first, nearest) {
+                continue;
+            }
+            let mut is_drawn = false;
+            for column in columns.clone() {
+                let at = span.row * self.columns + column;
+                let depth = span.depth(column) as f32;
+                let is_first = || self.faces[at].get().is_none_or(|other| face < other);
+                if depth > self.depths[at] || depth == self.depths[at] && is_first() {
+                    is_drawn = true;
+                    self.depths[at] = depth;
+                    self.faces[at] = Slot::some(face);
+                    let light = shade(span.normal(column), normals.seen(face)).0.to_array();
+                    self.lights[at] = light.map(|light| (light * FULL_LIGHT).round() as u16);
+                }
+            }
+            if is_drawn {
+                tiles.mark_drawn(first);
+            }
         }
     }
 
@@ -129,6 +170,11 @@ impl Samples {
         }
         Colour(sum / (self.per_side * self.per_side) as f64)
     }
+}
+
+/// Returns a depth that no interpolated depth up to `depth` exceeds through rounding.
+fn nearest(depth: f64) -> f32 {
+    (depth as f32).next_up()
 }
 
 /// Allocates a table of `count` cells. Returns an error if there is not enough memory.

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::mesh_files::shown;
 use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::exit_on_interrupt;
+use crate::progress::{Spinner, exit_on_interrupt};
 use crate::tables::table;
 use crate::text::{TextOutput, coordinate, figure, hanging_indent, sanitize};
 
@@ -55,7 +55,10 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
         samples: arguments.samples,
         seed: arguments.seed,
     };
-    let distance = mesh_distance(&first, &second, sampling).map_err(Failure::usage)?;
+    let spinner = Spinner::start(format!("comparing {}", shown(&arguments.first)));
+    let distance = mesh_distance(&first, &second, sampling);
+    spinner.clear();
+    let distance = distance.map_err(Failure::usage)?;
     let diagonal = diagonal(&first);
     let rows = rows(arguments, &distance, diagonal, origin);
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));

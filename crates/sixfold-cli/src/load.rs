@@ -14,6 +14,7 @@ use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;
 use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{read_mesh, read_mesh_at, shown};
+use crate::progress::Spinner;
 use crate::text::print_notice;
 use crate::triangulate::{cut_polygons, triangulated};
 use sixfold_results::numbers::counted;
@@ -55,8 +56,10 @@ pub(crate) fn for_inspection(
         if triangulate {
             study_mesh = triangulated(study_mesh, Some(&places))?;
         }
+        let spinner = Spinner::start(format!("inspecting {}", shown(path)));
         let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
         let measures = placed(measures(&study_mesh.polygons));
+        spinner.clear();
         return Ok(InspectedMesh {
             study_mesh,
             measures,
@@ -68,7 +71,9 @@ pub(crate) fn for_inspection(
     }
     // The facts of the file are those of the polygons.
     let (polygons, _, places) = mesh.into_polygons_with_places();
+    let spinner = Spinner::start(format!("inspecting {}", shown(path)));
     let (facts, measures, diagnosis) = examine(&polygons, SHOWN_PLACES);
+    spinner.clear();
     let study_mesh = StudyMesh::with_facts(shown(path), polygons, facts);
     Ok(InspectedMesh {
         study_mesh,

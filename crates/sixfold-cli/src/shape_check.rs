@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use sixfold::repair::{Measures, measures};
 use sixfold::spatial::{
-    Bvh, FaceTriangle, SpatialIndex, SurfacePoint, SurfaceQueries, closest_point_on_triangle,
-    polygon_triangles,
+    Bvh, FaceTriangle, SearchHint, SpatialIndex, SurfacePoint, SurfaceQueries,
+    closest_point_on_triangle, polygon_triangles,
 };
 use sixfold::{FaceId, PolygonMesh, VertexId, area_vector};
 use sixfold_results::numbers::counted;
@@ -80,9 +80,14 @@ fn changes(before: &PolygonMesh, after: &PolygonMesh) -> Vec<String> {
     }
     changes.extend(change_of_box(&old, &new));
     let turned = turned_faces(before, after);
-    if turned > 0 {
-        let faces = counted(turned, "face is turned over", "faces are turned over");
-        changes.push(faces);
+    if turned.count > 0 {
+        let faces = counted(turned.count, "face is turned over", "faces are turned over");
+        changes.push(match turned.compared {
+            compared if compared < after.face_count() => {
+                format!("of {compared} faces that were compared, {faces}")
+            }
+            _ => faces,
+        });
     }
     let [flat_before, flat] = [before, after].map(flat_faces);
     if flat > flat_before {
@@ -136,34 +141,66 @@ fn flat_faces(mesh: &PolygonMesh) -> usize {
         .count()
 }
 
-/// Returns the number of faces of `after` that look to the other side than the surface `before`: than
-/// the same face if the faces are the same ones, otherwise than all closest faces.
-fn turned_faces(before: &PolygonMesh, after: &PolygonMesh) -> usize {
+/// The faces that are turned over.
+struct TurnedFaces {
+    count: usize,
+    /// The number of faces of which this is known.
+    compared: usize,
+}
+
+/// The faces with which the time of a comparison is estimated.
+const TRIAL: usize = 256;
+
+/// The triangles of the surface with which a face is compared, on average, at most. Where one needs more,
+/// as on long triangles that cross in one region, only some of the faces are compared.
+const MOST_VISITS: u64 = 256;
+
+/// Counts the faces of `after` that look to the other side than the surface `before`: than the same face
+/// if the faces are the same ones, otherwise than all closest faces.
+fn turned_faces(before: &PolygonMesh, after: &PolygonMesh) -> TurnedFaces {
     if before.faces() == after.faces() {
         let faces = after.faces().iter();
         let turned = faces.filter(|(_, face)| normal(before, face).dot(normal(after, face)) < 0.0);
-        return turned.count();
+        return TurnedFaces {
+            count: turned.count(),
+            compared: after.face_count(),
+        };
     }
     let Ok(surface) = polygon_triangles(before).and_then(Bvh::build) else {
-        return 0;
+        return TurnedFaces {
+            count: 0,
+            compared: 0,
+        };
     };
-    let faces = after.faces().iter();
-    let centres: Vec<_> = faces
-        .map(|(_, face)| {
-            let corners = face.iter().map(|&v| after.position(v).as_dvec3());
-            corners.sum::<sixfold::glam::DVec3>() / face.len() as f64
-        })
-        .collect();
+    let centre = |face: &[VertexId]| {
+        let corners = face.iter().map(|&v| after.position(v).as_dvec3());
+        corners.sum::<sixfold::glam::DVec3>() / face.len() as f64
+    };
+    let faces = after.faces();
+    let trial = faces.iter().step_by(faces.len().div_ceil(TRIAL).max(1));
+    let (mut visits, mut queries) = (0, 0);
+    for (_, face) in trial {
+        // Each search starts anew, so this is more than a search from face to face needs.
+        let mut hint = SearchHint::default();
+        surface.closest_point_from(centre(face), &mut hint);
+        visits += hint.visits();
+        queries += 1;
+    }
+    let step = (visits / (MOST_VISITS * queries).max(1)).max(1) as usize;
+    let compared: Vec<&[VertexId]> = faces.iter().step_by(step).map(|(_, face)| face).collect();
+    let centres: Vec<_> = compared.iter().map(|&face| centre(face)).collect();
     let closest = surface.closest_point_of_each(&centres);
-    let faces = after.faces().iter().zip(closest);
-    let turned = faces.filter(|((_, face), closest)| {
+    let turned = compared.iter().zip(closest).filter(|(face, closest)| {
         closest.is_some_and(|closest| {
             let own = normal(after, face);
             let agrees = |f| normal(before, before.faces().face(f)).dot(own) >= 0.0;
             !agrees(closest.face) && !faces_near(&surface, &closest).into_iter().any(agrees)
         })
     });
-    turned.count()
+    TurnedFaces {
+        count: turned.count(),
+        compared: compared.len(),
+    }
 }
 
 /// Returns the faces that are, up to rounding, as close as `closest` to where it was looked for: several
@@ -264,5 +301,39 @@ mod tests {
             found,
             ["the surface is no longer closed", "1 face is turned over"]
         );
+    }
+
+    /// Where each comparison visits many faces, only some are compared.
+    #[test]
+    fn of_long_triangles_that_cross_some_are_compared() {
+        let count = 2000;
+        let mut points = Vec::new();
+        for i in 0..count {
+            let angle =
+                |x: u32| std::f32::consts::TAU * (f64::from(x * i) * 0.618_034).fract() as f32;
+            let (sin, cos) = angle(1).sin_cos();
+            let (height, radius) = angle(7).sin_cos();
+            let end = Point::new(radius * cos, radius * sin, height);
+            points.extend([end, -end, end + Point::new(0.0, 0.001, 0.001)]);
+        }
+        let mesh = |faces: Vec<Vec<u32>>| PolygonMesh::new(points.clone(), faces).expect("valid");
+        let before = mesh(
+            (0..count)
+                .map(|i| vec![3 * i, 3 * i + 1, 3 * i + 2])
+                .collect(),
+        );
+        let after = mesh(
+            (0..count)
+                .map(|i| vec![3 * i, 3 * i + 2, 3 * i + 1])
+                .collect(),
+        );
+        let turned = turned_faces(&before, &after);
+        assert!((20..1000).contains(&turned.compared), "{}", turned.compared);
+        assert_eq!(turned.count, turned.compared);
+        let whole = turned_faces(
+            &shapes::torus(9, 9).expect("small"),
+            &shapes::torus(9, 8).expect("small"),
+        );
+        assert_eq!((whole.count, whole.compared), (0, 72));
     }
 }

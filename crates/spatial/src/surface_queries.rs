@@ -43,7 +43,18 @@ pub struct RayHit<F> {
 /// vertex. A walk over samples passes one hint from sample to sample. A hint never changes the
 /// result. A hint of another index is allowed; it does not help.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SearchHint(Option<u32>);
+pub struct SearchHint {
+    slot: Option<u32>,
+    visits: u64,
+}
+
+impl SearchHint {
+    /// Returns how many triangles the searches with this hint have compared with their queries: the
+    /// larger part of their time.
+    pub fn visits(&self) -> u64 {
+        self.visits
+    }
+}
 
 /// Queries about surfaces, for every index of [`FaceTriangle`]s.
 ///
@@ -117,7 +128,9 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
         let mut limit = squared_radius(radius)?;
         let mut first_limit = limit;
         let mut best: Option<(usize, F, DVec3)> = None;
+        let visits = &mut hint.visits;
         let mut visit = |slot: usize| {
+            *visits += 1;
             let triangle = &items[slot];
             let offset = offset_to_triangle(query, triangle);
             let squared = offset.length_squared();
@@ -133,13 +146,13 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
             }
             limit
         };
-        let start = hint.0.map(|slot| slot as usize);
+        let start = hint.slot.map(|slot| slot as usize);
         if let Some(slot) = start.filter(|&slot| slot < items.len() && can_search(query)) {
             first_limit = visit(slot);
         }
         self.visit_near(query, first_limit, visit);
         let (slot, face, offset) = best?;
-        *hint = SearchHint(u32::try_from(slot).ok());
+        hint.slot = u32::try_from(slot).ok();
         Some(SurfacePoint {
             face,
             point: query + offset,

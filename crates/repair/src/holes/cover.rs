@@ -1,9 +1,11 @@
 //! Whether patches of holes would lie on the mesh, or on each other.
 
 use std::cell::OnceCell;
+use std::hash::BuildHasher as _;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use sixfold_core::{PolygonMesh, VertexId, row};
 use sixfold_spatial::{Bounds, Bvh, FaceTriangle, Item, NamedBox, SpatialIndex, polygon_triangles};
 
@@ -22,10 +24,13 @@ const MOST_ELSEWHERE: f64 = 1e-3;
 const COINCIDENT: f64 = 0.9;
 /// The number of edges up to which the parts of a patch are as fine as the edges.
 const FINE_EDGES: f64 = 64.0;
-/// The most that parts are coarser than edges where they are compared with the mesh.
+/// The most that parts are coarser than edges where they are compared with the mesh, of patches with up
+/// to 900 edges; for n edges √n / 5. A round patch has O(n) such parts.
 const MOST_COARSE: f64 = 6.0;
 /// A part of a patch is cut if more items than this are near it.
 const MOST_NEAR: usize = 48;
+/// In a cube as long as a part, of more parts than this only some are compared, and count for the others.
+const MOST_IN_CUBE: usize = 128;
 
 /// The triangles that fill a hole.
 pub(super) struct Patch {
@@ -101,7 +106,8 @@ impl Patch {
     /// Calls `visit` with each item that lies on the patch, and the area of the part of the patch on
     /// which it lies; several times if it lies on several parts. Ends if `visit` returns true.
     ///
-    /// Parts of the patch near many items are cut down to `part_length`.
+    /// Parts of the patch near many items are cut down to `part_length`. Where many parts are near many
+    /// items, as around a vertex of many long triangles, the areas are estimates.
     fn find_covers<F: Copy + Send + Sync>(
         &self,
         index: &Bvh<FaceTriangle<F>>,
@@ -110,30 +116,62 @@ impl Patch {
     ) {
         let mut clipper = Clipper::default();
         let mut near = Vec::new();
-        let mut parts: Vec<[DVec3; 3]> = Vec::new();
+        let mut crowds = Crowds::default();
+        // Each with the number of parts for which it counts.
+        let mut parts: Vec<([DVec3; 3], usize)> = Vec::new();
         for piece in &self.triangles {
-            parts.push(piece.corners);
-            while let Some(part) = parts.pop() {
-                let halves = halves(part, part_length);
-                let most = if halves.is_some() {
-                    MOST_NEAR
-                } else {
-                    usize::MAX
-                };
-                find_near(index, part, self.reach, most, &mut near);
-                if let Some(halves) = halves.filter(|_| near.len() > most) {
-                    parts.extend(halves);
-                    continue;
+            parts.push((piece.corners, 1));
+            while let Some((part, mut count)) = parts.pop() {
+                find_near(index, part, self.reach, MOST_NEAR, &mut near);
+                if near.len() > MOST_NEAR {
+                    count = crowds.share(part, count);
+                    if count == 0 {
+                        continue;
+                    }
+                    if let Some(halves) = halves(part, part_length) {
+                        parts.extend(halves.map(|half| (half, count)));
+                        continue;
+                    }
+                    find_near(index, part, self.reach, usize::MAX, &mut near);
                 }
                 for &slot in &near {
                     let item = &index.items()[slot];
                     let other = item.corners.map(|corner| corner.as_dvec3());
-                    let area = clipper.covered_area(part, other, self.reach);
+                    let area = count as f64 * clipper.covered_area(part, other, self.reach);
                     if area > 0.0 && visit(item.face, area) {
                         return;
                     }
                 }
             }
+        }
+    }
+}
+
+/// How many parts there are in cubes about as long as they are.
+#[derive(Default)]
+struct Crowds(FxHashMap<(i32, [i64; 3]), usize>);
+
+impl Crowds {
+    /// Adds a part that counts for `count` parts. Returns for how many it counts from here on: 0 if it
+    /// is not needed. Of n parts in one cube, O(log n) are needed.
+    fn share(&mut self, part: [DVec3; 3], count: usize) -> usize {
+        let length = longest_side(part).1.sqrt();
+        let level = length.log2().ceil();
+        let centre = part.into_iter().sum::<DVec3>() / 3.0;
+        let cube = (centre / level.exp2()).to_array();
+        let cube = cube.map(|coordinate| coordinate.floor() as i64);
+        let parts = self.0.entry((level as i32, cube)).or_default();
+        *parts += count;
+        let period = parts.div_ceil(MOST_IN_CUBE).next_power_of_two();
+        if count >= period {
+            return count;
+        }
+        // A hash does not follow the order of the parts.
+        let drawn =
+            FxBuildHasher.hash_one(part.map(|corner| corner.to_array().map(f64::to_bits))) >> 32;
+        match (drawn * (period / count) as u64) >> 32 {
+            0 => period,
+            _ => 0,
         }
     }
 }
@@ -212,7 +250,8 @@ impl<'a> Surface<'a> {
     pub(super) fn on(&self, patch: &Patch, is_in_hole: impl Fn(VertexId) -> bool) -> Covered {
         let mut covered = Covered::default();
         if let Some(index) = &self.index {
-            patch.find_covers(index, patch.part_length(MOST_COARSE), |f, area| {
+            let most_coarse = MOST_COARSE.max(0.2 * (patch.edges as f64).sqrt());
+            patch.find_covers(index, patch.part_length(most_coarse), |f, area| {
                 let mut face = self.polygons.faces().face(f).iter();
                 covered.add(face.any(|&v| is_in_hole(v)), area);
                 patch.is_covered(covered)
@@ -329,14 +368,21 @@ pub(super) fn coincide(one: &Patch, other: &Patch, covered: Covered) -> bool {
     covered.area() > COINCIDENT * one.area.max(other.area)
 }
 
+/// Returns the first corner of the longest side of a triangle, and the square of its length.
+fn longest_side(triangle: [DVec3; 3]) -> (usize, f64) {
+    let length = |i: usize| triangle[i].distance_squared(triangle[(i + 1) % 3]);
+    let longest = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j)));
+    let first = longest.expect("three sides");
+    (first, length(first))
+}
+
 /// Returns the halves of a triangle, cut across its longest side; `None` if no side is longer than
 /// `longest`.
 fn halves(triangle: [DVec3; 3], longest: f64) -> Option<[[DVec3; 3]; 2]> {
-    let length = |i: usize| triangle[i].distance_squared(triangle[(i + 1) % 3]);
-    let first = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j)))?;
+    let (first, square) = longest_side(triangle);
     let [a, b, c] = [0, 1, 2].map(|i| triangle[(first + i) % 3]);
     let middle = 0.5 * (a + b);
-    let is_long = length(first) > longest * longest;
+    let is_long = square > longest * longest;
     is_long.then_some([[a, middle, c], [middle, b, c]])
 }
 
@@ -394,5 +440,50 @@ impl Clipper {
             }
         }
         std::mem::swap(&mut self.polygon, &mut self.clipped);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Around a vertex of many triangles, the covered area is an estimate from a few parts of the patch.
+    #[test]
+    fn the_covered_area_around_a_hub_is_estimated() {
+        let count = 1024;
+        let rim = (0..count).map(|i| {
+            let (sin, cos) = (i as f32 * std::f32::consts::TAU / count as f32).sin_cos();
+            [cos, sin, 0.0]
+        });
+        let faces = (0..count).map(|i| [i, (i + 1) % count, count]);
+        let fan = PolygonMesh::new(rim.chain([[0.0; 3]]), faces).expect("valid");
+        let hole: Vec<VertexId> = (0..count).map(VertexId::new).collect();
+        let triangles: Vec<[VertexId; 3]> = fan
+            .faces()
+            .iter()
+            .map(|(_, face)| [face[0], face[1], face[2]])
+            .collect();
+        let patch = Patch::new(&fan, &hole, &triangles);
+        // All of the fan, half of it, and each second triangle.
+        let parts: [(&dyn Fn(usize) -> bool, f64); 3] = [
+            (&|_| true, 1.0),
+            (&|f| f < count as usize / 2, 0.5),
+            (&|f| f % 2 == 0, 0.5),
+        ];
+        for (is_in, part) in parts {
+            let mut items = polygon_triangles(&fan).expect("finite");
+            items.retain(|item| is_in(item.face.index()));
+            let index = Bvh::build(items).expect("finite");
+            let (mut area, mut visits) = (0.0, 0);
+            patch.find_covers(&index, 0.1, |_, covered| {
+                area += covered;
+                visits += 1;
+                false
+            });
+            let expected = part * patch.area();
+            assert!((area / expected - 1.0).abs() < 0.15, "{area} {expected}");
+            // All pairs at the centre alone would be ten times as many.
+            assert!(visits < 100 * count, "{visits}");
+        }
     }
 }
