@@ -133,7 +133,7 @@ fn rows_text(rows: &[Row], size: f64) -> String {
         String::new(),
     ];
     for (name, row) in names.into_iter().zip(rows) {
-        if let Some(at) = row.farthest {
+        if let Some(at) = row.farthest.filter(|_| row.largest > 0.0) {
             let at = at.map(|x| coordinate(x, size)).join(" ");
             lines.push(format!("farthest point of {name}: {at}"));
         }

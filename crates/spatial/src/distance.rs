@@ -67,7 +67,7 @@ impl MeshDistance {
 ///
 /// Each surface is sampled evenly by area, and the closest point of the other surface is computed for
 /// each sample and each vertex, as in Metro (Cignoni, Rocchini & Scopigno 1998). The closest points
-/// are exact; the means are estimates. Polygons are measured as the triangles
+/// are exact; the means are estimates; meshes with the same positions and faces are 0 apart. Polygons are measured as the triangles
 /// of [`polygon_triangles`]. With the feature `rayon`, the threads of the current pool share the
 /// queries; the result has the same bits on any number of threads.
 ///
@@ -97,9 +97,16 @@ pub fn mesh_distance(
     sampling: Sampling,
 ) -> Result<MeshDistance, DistanceError> {
     let [to_first, to_second] = [surface("first", first)?, surface("second", second)?];
+    // The samples of thin triangles are off them by more than rounding.
+    let is_same = first.positions() == second.positions() && first.faces() == second.faces();
+    let rounding = if is_same {
+        f64::INFINITY
+    } else {
+        SAMPLE_ROUNDING
+    };
     Ok(MeshDistance {
-        forward: one_sided("first", first, &to_second, sampling)?,
-        backward: one_sided("second", second, &to_first, sampling)?,
+        forward: one_sided("first", first, &to_second, sampling, rounding)?,
+        backward: one_sided("second", second, &to_first, sampling, rounding)?,
     })
 }
 
@@ -119,7 +126,7 @@ pub fn one_sided_distance<F: Copy + Ord + Send + Sync>(
     if to.items().is_empty() {
         return Err(DistanceError::NoFaces { mesh: "second" });
     }
-    one_sided("first", from, to, sampling)
+    one_sided("first", from, to, sampling, SAMPLE_ROUNDING)
 }
 
 type Surface = Bvh<FaceTriangle<sixfold_core::FaceId>>;
@@ -134,11 +141,14 @@ fn surface(mesh: &'static str, polygons: &PolygonMesh) -> Result<Surface, Distan
         .map_err(|error| DistanceError::Mesh { mesh, error })
 }
 
+/// `rounding` is the distance below which samples count as on the surface, as a part of the largest
+/// coordinate.
 fn one_sided<F: Copy + Ord + Send + Sync>(
     mesh: &'static str,
     from: &PolygonMesh,
     to: &impl SurfaceQueries<F>,
     sampling: Sampling,
+    rounding: f64,
 ) -> Result<OneSidedDistance, DistanceError> {
     if from.face_count() == 0 {
         return Err(DistanceError::NoFaces { mesh });
@@ -151,11 +161,23 @@ fn one_sided<F: Copy + Ord + Send + Sync>(
     }
     let triangles = polygon_triangles(from).map_err(|error| DistanceError::Mesh { mesh, error })?;
     let vertices = vertices_of_faces(from);
-    let at_vertices = sums(to, vertices.len(), |_, range, visit| {
+    let at_vertices = sums(to, vertices.len(), 0.0, |_, range, visit| {
         vertices[range].iter().for_each(|&vertex| visit(vertex));
     });
     let samples = AreaSamples::new(&triangles, sampling);
-    let at_samples = sums(to, samples.len(), |block, range, visit| {
+    let largest = |triangle: &FaceTriangle<_>| {
+        let corners = triangle.corners_f64();
+        corners
+            .map(|corner| corner.abs().max_element())
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
+    let rounding = rounding
+        * triangles
+            .iter()
+            .map(largest)
+            .fold(f64::MIN_POSITIVE, f64::max);
+    let at_samples = sums(to, samples.len(), rounding, |block, range, visit| {
         let mut random = ChaCha8Rng::seed_from_u64(sampling.seed);
         random.set_stream(block as u64);
         samples.for_each(range, &mut random, visit);
@@ -175,6 +197,10 @@ fn one_sided<F: Copy + Ord + Send + Sync>(
         vertices: at_vertices.points,
     })
 }
+
+/// The rounding error of a sample and its distance, as a part of the largest coordinate: samples of a surface
+/// that are on the other surface are not off it by rounding.
+const SAMPLE_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Returns the positions of the vertices that faces name, each once, in the order of the vertices.
 fn vertices_of_faces(polygons: &PolygonMesh) -> Vec<DVec3> {
@@ -222,11 +248,12 @@ impl Sums {
     }
 }
 
-/// Sums the distances of `points` points to a surface. `points_of` passes the points of a range to a
-/// function; it also gets the number of the block.
+/// Sums the distances of `points` points to a surface. Distances up to `rounding` are 0. `points_of`
+/// passes the points of a range to a function; it also gets the number of the block.
 fn sums<F: Copy + Ord + Send + Sync>(
     to: &impl SurfaceQueries<F>,
     points: usize,
+    rounding: f64,
     points_of: impl Fn(usize, std::ops::Range<usize>, &mut dyn FnMut(DVec3)) + Sync,
 ) -> Sums {
     let mut blocks = vec![Sums::NONE; points.div_ceil(BLOCK)];
@@ -234,10 +261,14 @@ fn sums<F: Copy + Ord + Send + Sync>(
         let range = block * BLOCK..points.min((block + 1) * BLOCK);
         let mut hint = SearchHint::default();
         points_of(block, range, &mut |point| {
-            let Some(closest) = to.closest_point_from(point, &mut hint) else {
+            let Some(squared) = to.distance_squared_from(point, &mut hint) else {
                 return; // unreachable: the surface has faces and the point is finite
             };
-            let squared = closest.distance_squared;
+            let squared = if squared > rounding * rounding {
+                squared
+            } else {
+                0.0
+            };
             sums[0] = sums[0].with(Sums {
                 points: 1,
                 sum: squared.sqrt(),

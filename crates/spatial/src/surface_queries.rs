@@ -92,6 +92,38 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
         self.closest_point_where(query, f64::INFINITY, hint, |_| true)
     }
 
+    /// Returns the squared distance to the surface, in less time if `hint` is the result of a query
+    /// nearby; `None` if there are no faces. Unlike [`closest_point_from`](Self::closest_point_from), it
+    /// ends at the first face that the query is on.
+    #[inline]
+    fn distance_squared_from(&self, query: impl Into<DVec3>, hint: &mut SearchHint) -> Option<f64> {
+        let query = query.into();
+        let items = self.items();
+        let mut best: Option<(usize, f64)> = None;
+        let visits = &mut hint.visits;
+        let mut visit = |slot: usize| {
+            *visits += 1;
+            let squared = offset_to_triangle(query, &items[slot]).length_squared();
+            if best.is_none_or(|(_, least)| squared < least) {
+                best = Some((slot, squared));
+            }
+            match best {
+                Some((_, least)) if least > 0.0 => least,
+                // Nothing is nearer.
+                _ => f64::NEG_INFINITY,
+            }
+        };
+        let mut limit = f64::INFINITY;
+        let start = hint.slot.map(|slot| slot as usize);
+        if let Some(slot) = start.filter(|&slot| slot < items.len() && can_search(query)) {
+            limit = visit(slot);
+        }
+        self.visit_near(query, limit, visit);
+        let (slot, squared) = best?;
+        hint.slot = u32::try_from(slot).ok();
+        Some(squared)
+    }
+
     /// Returns the closest point of the faces whose normal agrees with `normal`: the cosine of the
     /// angle between them is at least `least_cosine`. So a point does not get to the other side of a
     /// thin wall. Faces without area are left out.

@@ -174,10 +174,9 @@ fn collapsed_faces(
         }
         let after = sorted(face.iter().map(|&v| of(v)).collect());
         if after.windows(2).any(|pair| pair[0] == pair[1]) {
-            let has_coincident = (1..face.len()).any(|i| {
-                let at = polygons.position(face[i]);
-                face[..i].iter().any(|&v| polygons.position(v) == at)
-            });
+            let mut places: Vec<[u32; 3]> = face.iter().map(|&v| place(polygons, v)).collect();
+            places.sort_unstable();
+            let has_coincident = places.windows(2).any(|pair| pair[0] == pair[1]);
             collapsed += usize::from(!has_coincident);
         } else if face.iter().all(|v| is_merged[v.index()]) {
             let before = sorted(face.to_vec());
@@ -186,6 +185,14 @@ fn collapsed_faces(
         }
     }
     collapsed
+}
+
+/// Returns the same bits for vertices at the same position.
+fn place(polygons: &PolygonMesh, v: VertexId) -> [u32; 3] {
+    // Replaces −0 by 0.
+    (polygons.position(v) + Point::ZERO)
+        .to_array()
+        .map(f32::to_bits)
 }
 
 /// Returns `x` rounded up to two significant digits.
@@ -233,9 +240,7 @@ impl<'a> Boundary<'a> {
         let mut seen = FxHashSet::default();
         let points = vertices.iter().filter_map(|&(vertex, _)| {
             let position = polygons.position(vertex);
-            // Replaces −0 by 0.
-            let place = (position + Point::ZERO).to_array().map(f32::to_bits);
-            seen.insert(place)
+            seen.insert(place(polygons, vertex))
                 .then_some(VertexPoint { vertex, position })
         });
         let tree = KdTree::build(points.collect()).expect("finite points, not more than vertices");

@@ -83,7 +83,27 @@ fn a_mesh_has_no_distance_to_itself() {
         .map(|&p| p * 0.3 + Point::new(0.7, -3.1, 0.2));
     let mesh = PolygonMesh::from_faces(moved.collect(), mesh.faces().clone()).expect("valid");
     let distance = mesh_distance(&mesh, &mesh, Sampling::default()).expect("faces");
-    assert!(distance.largest() < 1e-14, "{}", distance.largest());
+    assert_eq!(distance.largest(), 0.0);
+    // Also if the faces are others of the same surface.
+    let faces = mesh.faces().iter();
+    let faces = faces.map(|(_, face)| face.iter().rev().map(|v| v.row()).collect());
+    let faces: Vec<Vec<u32>> = faces.collect();
+    let reversed = PolygonMesh::new(mesh.positions().iter().copied(), faces).expect("valid");
+    let distance = mesh_distance(&mesh, &reversed, Sampling::default()).expect("faces");
+    assert_eq!(distance.largest(), 0.0);
+    // A thin triangle, and a surface that is a little apart.
+    let thin = |height: f32| {
+        let points = [
+            [0.0, 0.0, height],
+            [1.0, 1e-6, height],
+            [1.0, 0.0, height + 1e-6],
+        ];
+        PolygonMesh::new(points, [[0, 1, 2]]).expect("valid")
+    };
+    let distance =
+        |height| mesh_distance(&thin(0.0), &thin(height), Sampling::default()).expect("faces");
+    assert_eq!(distance(0.0).largest(), 0.0);
+    assert!(distance(1e-9).mean() > 1e-10);
 }
 
 #[test]

@@ -204,6 +204,8 @@ fn surface_answers<T: SpatialIndex<FaceTriangle<u32>>>(input: &Input) -> Surface
             free,
             "a hint changes the answer"
         );
+        let squared = free.map(|closest| closest.distance_squared);
+        assert_eq!(index.distance_squared_from(query, &mut hint), squared);
         closest.push(free);
         closest.push(index.closest_point_facing(query, target, 0.25, &mut hint));
         for radius in radii(input, query) {
