@@ -153,7 +153,7 @@ const TRIAL: usize = 256;
 
 /// The triangles of the surface with which a face is compared, on average, at most. Where one needs more,
 /// as on long triangles that cross in one region, only some of the faces are compared.
-const MOST_VISITS: u64 = 256;
+const MOST_VISITS: u64 = 128;
 
 /// Counts the faces of `after` that look to the other side than the surface `before`: than the same face
 /// if the faces are the same ones, otherwise than all closest faces.

@@ -29,6 +29,9 @@ const FINE_EDGES: f64 = 64.0;
 const MOST_COARSE: f64 = 6.0;
 /// A part of a patch is cut if more items than this are near it.
 const MOST_NEAR: usize = 48;
+/// A part that is not cut further is compared with this many items near it. More are near only a vertex of
+/// very many faces, and the part there is small.
+const MOST_AT_PART: usize = 256;
 /// In a cube as long as a part, of more parts than this only some are compared, and count for the others.
 const MOST_IN_CUBE: usize = 128;
 
@@ -132,7 +135,7 @@ impl Patch {
                         parts.extend(halves.map(|half| (half, count)));
                         continue;
                     }
-                    find_near(index, part, self.reach, usize::MAX, &mut near);
+                    find_near(index, part, self.reach, MOST_AT_PART, &mut near);
                 }
                 for &slot in &near {
                     let item = &index.items()[slot];

@@ -1,4 +1,4 @@
-use sixfold_core::Point;
+use sixfold_core::{Point, PolygonMesh, RowId};
 
 use super::*;
 
