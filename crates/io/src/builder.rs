@@ -1,6 +1,6 @@
 //! Collects vertices and faces of a file, with the checks that all formats share.
 
-use std::io::{self, Read};
+use std::io::{self};
 
 use sixfold_core::{FaceId, FaceList, MAX_ROWS, Point, PolygonCutter, VertexId, row};
 
@@ -278,10 +278,7 @@ impl<'a> MeshBuilder<'a> {
     }
 
     /// Counts the bytes after the mesh, except white space.
-    pub(crate) fn note_trailing(
-        &mut self,
-        source: &mut ByteSource<impl Read>,
-    ) -> Result<(), ReadError> {
+    pub(crate) fn note_trailing(&mut self, source: &mut ByteSource<'_>) -> Result<(), ReadError> {
         let mut line = source.line_count() + 1;
         loop {
             let offset = source.offset();

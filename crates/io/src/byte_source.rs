@@ -12,8 +12,8 @@ pub(crate) const MAX_LINE_LENGTH: usize = 1 << 26;
 ///
 /// The buffer grows only to hold bytes that were read, so a wrong length in a file cannot make it
 /// larger than twice the file.
-pub(crate) struct ByteSource<R> {
-    source: R,
+pub(crate) struct ByteSource<'a> {
+    source: &'a mut dyn Read,
     buffer: Vec<u8>,
     /// The bytes `start..end` of the buffer are read and not consumed.
     start: usize,
@@ -44,9 +44,9 @@ pub(crate) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     words.filter(|word| !word.is_empty())
 }
 
-impl<R: Read> ByteSource<R> {
+impl<'a> ByteSource<'a> {
     /// Creates a reader of `source`, which has `size` bytes.
-    pub(crate) fn new(source: R, size: Option<u64>) -> Self {
+    pub(crate) fn new(source: &'a mut dyn Read, size: Option<u64>) -> Self {
         Self {
             source,
             buffer: Vec::new(),
@@ -167,7 +167,7 @@ impl<R: Read> ByteSource<R> {
     }
 }
 
-impl<R: Read> Read for ByteSource<R> {
+impl Read for ByteSource<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.fill_buf()?.read(buffer)?;
         self.advance(count);
@@ -175,7 +175,7 @@ impl<R: Read> Read for ByteSource<R> {
     }
 }
 
-impl<R: Read> BufRead for ByteSource<R> {
+impl BufRead for ByteSource<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         self.fill(1)
     }
@@ -199,8 +199,8 @@ mod tests {
         }
     }
 
-    fn lines(source: impl Read) -> Vec<String> {
-        let mut source = ByteSource::new(source, None);
+    fn lines(mut source: impl Read) -> Vec<String> {
+        let mut source = ByteSource::new(&mut source, None);
         let mut all = Vec::new();
         while let Some(line) = source.line().expect("memory does not fail") {
             assert_eq!(line.number as usize, all.len() + 1);
@@ -230,7 +230,8 @@ mod tests {
 
     #[test]
     fn bytes_after_a_line_are_kept() {
-        let mut source = ByteSource::new(Slow(b"ply\r\n\n1234567"), None);
+        let mut slow = Slow(b"ply\r\n\n1234567");
+        let mut source = ByteSource::new(&mut slow, None);
         assert_eq!(source.line().expect("memory").expect("a line").text, b"ply");
         assert_eq!(source.offset(), 5);
         assert_eq!(&source.fill(3).expect("memory")[..3], b"\n12");
@@ -247,7 +248,8 @@ mod tests {
     #[test]
     fn long_records_cross_chunks() {
         let bytes: Vec<u8> = (0..3 * CHUNK).map(|i| (i % 251) as u8).collect();
-        let mut source = ByteSource::new(bytes.as_slice(), Some(bytes.len() as u64));
+        let mut slice = bytes.as_slice();
+        let mut source = ByteSource::new(&mut slice, Some(bytes.len() as u64));
         source.fill(1).expect("memory");
         source.advance(10);
         assert_eq!(

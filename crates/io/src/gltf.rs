@@ -7,7 +7,6 @@ mod document;
 mod extensions;
 mod scene;
 
-use std::io::Read;
 use std::path::Path;
 
 use crate::builder::MeshBuilder;
@@ -29,7 +28,7 @@ use scene::SceneReader;
 pub(crate) fn read(
     name: &str,
     path: Option<&Path>,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let mut builder = MeshBuilder::new(name, Format::Gltf, options, FacePlaces::Numbers);

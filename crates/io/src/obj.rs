@@ -6,6 +6,7 @@ use std::io::BufRead;
 use std::path::Path;
 
 use crate::builder::MeshBuilder;
+use crate::byte_source::ByteSource;
 use crate::error::ReadError;
 use crate::file_mesh::FileMesh;
 use crate::format::Format;
@@ -43,14 +44,18 @@ const LOAD_OPTIONS: tobj::LoadOptions = tobj::LoadOptions {
 /// assert_eq!(error.to_string(), message);
 /// # Ok::<(), sixfold_io::ReadError>(())
 /// ```
-pub fn parse_obj(name: &str, source: impl BufRead) -> Result<FileMesh, ReadError> {
-    read(name, source, ReadOptions::default())
+pub fn parse_obj(name: &str, mut source: impl BufRead) -> Result<FileMesh, ReadError> {
+    read(
+        name,
+        &mut ByteSource::new(&mut source, None),
+        ReadOptions::default(),
+    )
 }
 
 /// Reads OBJ text from `source`; O(bytes).
 pub(crate) fn read(
     name: &str,
-    source: impl BufRead,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let places = FacePlaces::Lines(Vec::new());

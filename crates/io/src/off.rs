@@ -1,7 +1,5 @@
 //! Reads OFF.
 
-use std::io::Read;
-
 use crate::builder::MeshBuilder;
 use crate::byte_source::{ByteSource, words};
 use crate::error::ReadError;
@@ -20,7 +18,7 @@ const MIN_LINE: u64 = 6;
 /// Reads OFF; O(bytes) expected.
 pub(crate) fn read(
     name: &str,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let places = FacePlaces::Lines(Vec::new());
@@ -64,9 +62,9 @@ struct Header {
 }
 
 /// Reads lines without comments and blank lines.
-struct Reader<'a, 'b, R> {
+struct Reader<'a, 'b, 's> {
     builder: MeshBuilder<'b>,
-    source: &'a mut ByteSource<R>,
+    source: &'a mut ByteSource<'s>,
     /// The current line without its comment.
     line: Vec<u8>,
     /// The number of the current line.
@@ -75,7 +73,7 @@ struct Reader<'a, 'b, R> {
     is_pending: bool,
 }
 
-impl<R: Read> Reader<'_, '_, R> {
+impl Reader<'_, '_, '_> {
     fn place(&self) -> Place {
         Place::Line(self.number)
     }

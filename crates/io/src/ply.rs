@@ -8,8 +8,6 @@ mod scalar;
 
 pub(crate) use scalar::{ByteOrder, Scalar};
 
-use std::io::Read;
-
 use header::{Element, Header};
 use layout::{Role, Step, note_ignored, role};
 
@@ -26,7 +24,7 @@ use crate::place::{FacePlaces, Place};
 /// Reads PLY in any form; O(bytes) expected.
 pub(crate) fn read(
     name: &str,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let places = FacePlaces::Lines(Vec::new());

@@ -46,13 +46,13 @@ pub fn read(path: impl AsRef<Path>) -> Result<FileMesh, ReadError> {
 pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<FileMesh, ReadError> {
     let path = path.as_ref();
     let name = path.display().to_string();
-    let file = match open(path) {
+    let mut file = match open(path) {
         Ok(file) => file,
         Err(OpenError::Directory) => return Err(ReadError::Directory { file: name }),
         Err(OpenError::Failed(cause)) => return Err(ReadError::Open { file: name, cause }),
     };
     let regular = file.metadata().ok().filter(fs::Metadata::is_file);
-    let mut source = ByteSource::new(file, regular.map(|metadata| metadata.len()));
+    let mut source = ByteSource::new(&mut file, regular.map(|metadata| metadata.len()));
     read_any(&name, Some(path), &mut source, *options)
 }
 
@@ -81,10 +81,15 @@ pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<FileMe
 /// ```
 pub fn read_from(
     name: &str,
-    source: impl Read,
+    mut source: impl Read,
     options: &ReadOptions,
 ) -> Result<FileMesh, ReadError> {
-    read_any(name, None, &mut ByteSource::new(source, None), *options)
+    read_any(
+        name,
+        None,
+        &mut ByteSource::new(&mut source, None),
+        *options,
+    )
 }
 
 /// Reads a mesh; `path` is the place of the file, if it has one.
@@ -92,7 +97,7 @@ pub fn read_from(
 fn read_any(
     name: &str,
     path: Option<&Path>,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let known_size = source.size();

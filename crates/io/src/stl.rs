@@ -3,8 +3,6 @@
 mod ascii;
 mod binary;
 
-use std::io::Read;
-
 use crate::builder::MeshBuilder;
 use crate::byte_source::ByteSource;
 use crate::error::ReadError;
@@ -21,7 +19,7 @@ const BATCH: usize = 256;
 /// Reads the binary form; O(bytes) expected.
 pub(crate) fn read_binary(
     name: &str,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let builder = MeshBuilder::new(name, Format::Stl, options, binary::PLACES);
@@ -33,7 +31,7 @@ pub(crate) fn read_binary(
 /// not that of the facets that follow, so that it is not STL. O(bytes) expected.
 pub(crate) fn read_binary_if_complete(
     name: &str,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<Option<FileMesh>, ReadError> {
     match read_binary(name, source, options) {
@@ -55,7 +53,7 @@ pub(crate) fn read_binary_if_complete(
 /// Reads the text form; O(bytes) expected.
 pub(crate) fn read_ascii(
     name: &str,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     options: ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     let places = FacePlaces::Lines(Vec::new());

@@ -158,7 +158,24 @@ pub fn write_to(
     polygons: &PolygonMesh,
     format: Format,
     options: &WriteOptions<'_>,
-    out: impl Write,
+    mut out: impl Write,
+) -> Result<Vec<Loss>, WriteError> {
+    write_buffered(
+        polygons,
+        format,
+        options,
+        BufWriter::with_capacity(1 << 16, &mut out),
+    )
+}
+
+/// A writer whose type does not depend on the caller, so that what writes is compiled in this crate.
+type Out<'o> = BufWriter<&'o mut dyn Write>;
+
+fn write_buffered(
+    polygons: &PolygonMesh,
+    format: Format,
+    options: &WriteOptions<'_>,
+    mut out: Out<'_>,
 ) -> Result<Vec<Loss>, WriteError> {
     options.check(polygons, format)?;
     let cut = match format.holds_polygons() || polygons.first_polygon().is_none() {
@@ -166,7 +183,6 @@ pub fn write_to(
         false => Some(polygons.triangulated()?),
     };
     let triangles = cut.as_ref().map_or(polygons, |cut| &cut.polygons);
-    let mut out = BufWriter::with_capacity(1 << 16, out);
     match format {
         Format::Obj => {
             obj::write_text(polygons, options, &mut out)?;

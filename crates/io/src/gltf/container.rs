@@ -19,7 +19,7 @@ pub(super) struct Container {
 /// Reads the file.
 pub(super) fn read(
     builder: &mut MeshBuilder,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
 ) -> Result<Container, ReadError> {
     let start = source
         .fill(12)
@@ -71,7 +71,7 @@ struct Chunk {
 /// Reads a chunk; returns `None` at the end of the file.
 fn read_chunk(
     builder: &MeshBuilder,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
 ) -> Result<Option<Chunk>, ReadError> {
     let place = Place::Byte(source.offset());
     let header = source.fill(8).map_err(|e| builder.read_error(place, e))?;
@@ -93,7 +93,7 @@ fn read_chunk(
 /// Reads up to `length` bytes. The memory grows with the bytes that exist.
 fn read_bytes(
     builder: &MeshBuilder,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     length: u64,
 ) -> Result<Vec<u8>, ReadError> {
     let place = Place::Byte(source.offset());

@@ -1,7 +1,5 @@
 //! Reads the records of a PLY file in text form: one record per line.
 
-use std::io::Read;
-
 use super::Reading;
 use super::layout::{Role, Step};
 use crate::byte_source::{ByteSource, words};
@@ -15,10 +13,7 @@ use crate::place::Place;
 const MIN_LINE: u64 = 6;
 
 /// Reads all records of an element.
-pub(super) fn read(
-    mut reading: Reading,
-    source: &mut ByteSource<impl Read>,
-) -> Result<(), ReadError> {
+pub(super) fn read(mut reading: Reading, source: &mut ByteSource<'_>) -> Result<(), ReadError> {
     let count = reading.element.count;
     if reading.steps.is_empty() {
         return Ok(()); // records without content, however many

@@ -1,7 +1,5 @@
 //! Reads the records of a binary PLY file.
 
-use std::io::Read;
-
 use super::layout::{Role, Step};
 use super::{ByteOrder, Reading, Scalar};
 use crate::byte_source::ByteSource;
@@ -12,7 +10,7 @@ use crate::place::{FacePlaces, Place};
 /// Reads all records of an element.
 pub(super) fn read(
     mut reading: Reading,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     order: ByteOrder,
 ) -> Result<(), ReadError> {
     let count = reading.element.count;
@@ -42,7 +40,7 @@ pub(super) fn read(
 }
 
 /// Reserves memory, as far as the size of the file justifies it.
-fn prepare(reading: &mut Reading, source: &ByteSource<impl Read>, min_size: usize) {
+fn prepare(reading: &mut Reading, source: &ByteSource<'_>, min_size: usize) {
     let count = reading.element.count;
     match reading.role {
         Role::Vertices(_) => {
@@ -71,7 +69,7 @@ fn prepare(reading: &mut Reading, source: &ByteSource<impl Read>, min_size: usiz
 /// Reads the complete records in the buffer, adds their number to `done`, and returns their bytes.
 fn read_buffered(
     reading: &mut Reading,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
     order: ByteOrder,
     done: &mut u64,
 ) -> Result<usize, ReadError> {

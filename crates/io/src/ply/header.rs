@@ -1,7 +1,6 @@
 //! Reads the header of a PLY file.
 
 use std::collections::HashSet;
-use std::io::Read;
 
 use super::Scalar;
 use crate::builder::MeshBuilder;
@@ -53,7 +52,7 @@ impl Header {
     /// Reads up to the end of the line `end_header`.
     pub(super) fn read(
         builder: &mut MeshBuilder,
-        source: &mut ByteSource<impl Read>,
+        source: &mut ByteSource<'_>,
     ) -> Result<Self, ReadError> {
         let mut parser = Parser::default();
         let mut lines;

@@ -1,7 +1,5 @@
 //! Reads STL as text.
 
-use std::io::Read;
-
 use super::Facets;
 use crate::byte_source::{ByteSource, words};
 use crate::error::ReadError;
@@ -46,7 +44,7 @@ struct Parser<'a> {
 /// Reads all solids.
 pub(super) fn read<'a>(
     mut facets: Facets<'a>,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
 ) -> Result<Facets<'a>, ReadError> {
     facets.reserve(0);
     let mut parser = Parser {

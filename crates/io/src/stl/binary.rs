@@ -1,7 +1,5 @@
 //! Reads binary STL: 80 bytes of text, the number of facets, and 50 bytes per facet.
 
-use std::io::Read;
-
 use super::Facets;
 use crate::byte_source::ByteSource;
 use crate::error::ReadError;
@@ -20,7 +18,7 @@ pub(super) const PLACES: FacePlaces = FacePlaces::Records {
 /// Reads all facets.
 pub(super) fn read<'a>(
     mut facets: Facets<'a>,
-    source: &mut ByteSource<impl Read>,
+    source: &mut ByteSource<'_>,
 ) -> Result<Facets<'a>, ReadError> {
     let count = read_count(&facets, source)?;
     facets.reserve(source.plausible(count, STL_FACET as u64));
@@ -50,10 +48,7 @@ pub(super) fn read<'a>(
 
 /// Reads the facets after those that the header counts: some programs write the header first, with
 /// the number 0. The facets end where a record cannot be one.
-fn read_uncounted(
-    facets: &mut Facets,
-    source: &mut ByteSource<impl Read>,
-) -> Result<(), ReadError> {
+fn read_uncounted(facets: &mut Facets, source: &mut ByteSource<'_>) -> Result<(), ReadError> {
     let mut is_first = true;
     loop {
         let offset = source.offset();
@@ -83,7 +78,7 @@ fn is_facet(record: &[u8; STL_FACET]) -> bool {
 }
 
 /// Reads the number of facets.
-fn read_count(facets: &Facets, source: &mut ByteSource<impl Read>) -> Result<u64, ReadError> {
+fn read_count(facets: &Facets, source: &mut ByteSource<'_>) -> Result<u64, ReadError> {
     let header = source.fill(STL_HEADER);
     let header = header.map_err(|e| facets.builder.read_error(Place::Byte(0), e))?;
     let Some(&[a, b, c, d]) = header.get(STL_HEADER - 4..STL_HEADER) else {

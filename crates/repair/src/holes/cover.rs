@@ -29,9 +29,11 @@ const FINE_EDGES: f64 = 64.0;
 const MOST_COARSE: f64 = 6.0;
 /// A part of a patch is cut if more items than this are near it.
 const MOST_NEAR: usize = 48;
-/// A part that is not cut further is compared with this many items near it. More are near only a vertex of
-/// very many faces, and the part there is small.
+/// A part is cut further if more items than this are near it, and then compared with only so many: there are
+/// more near a vertex of very many faces.
 const MOST_AT_PART: usize = 256;
+/// How many times shorter those parts are.
+const CROWDED_PARTS: f64 = 16.0;
 /// In a cube as long as a part, of more parts than this only some are compared, and count for the others.
 const MOST_IN_CUBE: usize = 128;
 
@@ -136,6 +138,12 @@ impl Patch {
                         continue;
                     }
                     find_near(index, part, self.reach, MOST_AT_PART, &mut near);
+                    let crowded = near.len() > MOST_AT_PART;
+                    let shortest = part_length / CROWDED_PARTS;
+                    if let Some(halves) = halves(part, shortest).filter(|_| crowded) {
+                        parts.extend(halves.map(|half| (half, count)));
+                        continue;
+                    }
                 }
                 for &slot in &near {
                     let item = &index.items()[slot];

@@ -370,3 +370,27 @@ fn a_hole_in_a_thin_solid_is_filled() {
         assert_eq!(covering(&result), 2);
     }
 }
+
+/// The triangles of a hub that are not joined: each hole has the triangle of its own face.
+#[test]
+fn triangles_with_one_corner_at_one_place_are_covered_by_themselves() {
+    let count = 1000_u32;
+    let points = (0..3 * count).map(|i| {
+        let angle =
+            (f64::from(i / 3) + 0.5 * f64::from(i % 3)) * std::f64::consts::TAU / f64::from(count);
+        let (sin, cos) = angle.sin_cos();
+        match i % 3 {
+            0 => Point::ZERO,
+            _ => DVec3::new(cos, sin, 0.3).as_vec3(),
+        }
+    });
+    let faces = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    let fans = PolygonMesh::new(points, faces).expect("valid");
+    for method in METHODS {
+        let result = filled(&fans, method, None);
+        assert_eq!(
+            (result.is_changed(), covering(&result)),
+            (false, count as usize)
+        );
+    }
+}
