@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 
 use crate::orientation::{Components, Facing, UndecidedReason, faces_to_reverse};
 use rustc_hash::FxHashMap;
-use sixfold_core::{Capabilities, Facts, Fans, Incidence, Pair, PolygonMesh, VertexId, join};
+use sixfold_core::{
+    Capabilities, FaceId, Facts, Fans, Incidence, Pair, PolygonMesh, VertexId, join,
+};
 
 use crate::duplicates::Copies;
 use crate::flat::is_flat;
@@ -123,7 +125,11 @@ impl Diagnosis {
 pub fn diagnose(polygons: &PolygonMesh, places: usize) -> Diagnosis {
     let (positions, incidence) = prepare(polygons);
     let fans = Fans::new(&incidence);
-    diagnose_with(polygons, &fans, &positions, places)
+    let (crossing, found) = join(
+        || polygons.crossing_faces(),
+        || find(polygons, &fans, &positions, places),
+    );
+    found.diagnosis(polygons, &fans, &positions, &crossing)
 }
 
 /// Returns the facts of a mesh, its measures and its diagnosis, as [`Facts::from_polygons`],
@@ -135,13 +141,14 @@ pub fn diagnose(polygons: &PolygonMesh, places: usize) -> Diagnosis {
 pub fn examine(polygons: &PolygonMesh, places: usize) -> (Facts, Measures, Diagnosis) {
     let (positions, incidence) = prepare(polygons);
     let fans = Fans::new(&incidence);
-    let ((facts, measures), diagnosis) = join(
+    let ((facts, (measures, crossing)), found) = join(
         || {
             let measures = measures_with(polygons, fans.incidence());
             (Facts::from_fans(&fans), measures)
         },
-        || diagnose_with(polygons, &fans, &positions, places),
+        || find(polygons, &fans, &positions, places),
     );
+    let diagnosis = found.diagnosis(polygons, &fans, &positions, &crossing);
     (facts, measures, diagnosis)
 }
 
@@ -152,12 +159,8 @@ fn prepare(polygons: &PolygonMesh) -> (PlaceNumbers, Incidence<'_>) {
     )
 }
 
-fn diagnose_with(
-    polygons: &PolygonMesh,
-    fans: &Fans<'_>,
-    positions: &PlaceNumbers,
-    places: usize,
-) -> Diagnosis {
+/// Finds the faults, except the faces that cross themselves.
+fn find(polygons: &PolygonMesh, fans: &Fans<'_>, positions: &PlaceNumbers, places: usize) -> Found {
     let incidence = fans.incidence();
     let (mut found, in_faces) = join(
         || {
@@ -174,22 +177,7 @@ fn diagnose_with(
         },
     );
     found.faults.extend(in_faces.faults);
-    let boundary = found.faults.get(&FaultKind::BoundaryEdge);
-    let boundary_edges = boundary.map_or(0, |fault| fault.count);
-    let in_order = FaultKind::ALL.iter();
-    Diagnosis {
-        faults: in_order
-            .filter_map(|kind| found.faults.remove(kind))
-            .collect(),
-        vertices: polygons.vertex_count(),
-        positions: positions.len(),
-        boundary_edges,
-        seam_edges: seam_edges(incidence, positions),
-        crack: match boundary_edges {
-            0 => None,
-            _ => cracks::crack(polygons, incidence),
-        },
-    }
+    found
 }
 
 /// The faults while they are counted.
@@ -213,10 +201,43 @@ impl Found {
             fault.places.push(place);
         }
     }
+
+    /// Returns the diagnosis; `crossing` are the faces that cross themselves.
+    fn diagnosis(
+        mut self,
+        polygons: &PolygonMesh,
+        fans: &Fans<'_>,
+        positions: &PlaceNumbers,
+        crossing: &[FaceId],
+    ) -> Diagnosis {
+        for &f in crossing {
+            self.add(FaultKind::CrossingFace, Place::Face(f));
+        }
+        let incidence = fans.incidence();
+        let boundary = self.faults.get(&FaultKind::BoundaryEdge);
+        let boundary_edges = boundary.map_or(0, |fault| fault.count);
+        let in_order = FaultKind::ALL.iter();
+        Diagnosis {
+            faults: in_order
+                .filter_map(|kind| self.faults.remove(kind))
+                .collect(),
+            vertices: polygons.vertex_count(),
+            positions: positions.len(),
+            boundary_edges,
+            seam_edges: match boundary_edges {
+                0 => 0,
+                _ => seam_edges(incidence, positions),
+            },
+            crack: match boundary_edges {
+                0 => None,
+                _ => cracks::crack(polygons, incidence),
+            },
+        }
+    }
 }
 
 fn find_edges(incidence: &Incidence<'_>, found: &mut Found) {
-    for edge in incidence.edges() {
+    incidence.edges().for_each(|edge| {
         let place = Place::Edge(edge.ends);
         let down = edge.downward();
         if edge.len() == 1 {
@@ -228,7 +249,7 @@ fn find_edges(incidence: &Incidence<'_>, found: &mut Found) {
         if down > 1 || edge.len() - down > 1 {
             found.add(FaultKind::RepeatedSide, place);
         }
-    }
+    });
 }
 
 fn find_vertices(
@@ -285,9 +306,6 @@ fn find_faces(polygons: &PolygonMesh, positions: &PlaceNumbers, found: &mut Foun
         if opposite.is_some() {
             found.add(FaultKind::OppositeFace, place);
         }
-    }
-    for f in polygons.crossing_faces() {
-        found.add(FaultKind::CrossingFace, Place::Face(f));
     }
 }
 

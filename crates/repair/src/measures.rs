@@ -1,7 +1,7 @@
 //! The size of a mesh: its box, the lengths of its edges, its area and its volume.
 
 use glam::DVec3;
-use sixfold_core::{Incidence, PolygonCutter, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
 
 /// The size of a mesh, in units of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,15 +54,19 @@ impl Measures {
 /// ```
 pub fn measures(polygons: &PolygonMesh) -> Measures {
     let incidence = Incidence::new(polygons.vertex_count(), polygons.faces(), |_| true);
-    measures_with(polygons, &incidence)
+    measures_with(polygons, &incidence).0
 }
 
-/// Measures a mesh. `incidence` has the sides of all its faces.
-pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -> Measures {
+/// Measures a mesh, and returns the faces that cross themselves, ascending. `incidence` has the sides of all
+/// its faces.
+pub(crate) fn measures_with(
+    polygons: &PolygonMesh,
+    incidence: &Incidence<'_>,
+) -> (Measures, Vec<FaceId>) {
     let at = |v: VertexId| polygons.position(v).as_dvec3();
     let mut is_closed = polygons.face_count() > 0;
     let (mut least, mut largest, mut sum, mut edges) = (f64::INFINITY, 0.0_f64, 0.0, 0_usize);
-    for edge in incidence.edges() {
+    incidence.edges().for_each(|edge| {
         is_closed &= edge.len() == 2 && edge.downward() == 1;
         let [a, b] = edge.ends.map(at);
         let length = a.distance(b);
@@ -70,18 +74,23 @@ pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -
         largest = largest.max(length);
         sum += length;
         edges += 1;
-    }
+    });
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (mut area, mut six_volumes) = (0.0, 0.0);
     let mut cutter = PolygonCutter::default();
     let origin = polygons.faces().corners().first().map(|&v| at(v));
-    for (_, face) in polygons.faces().iter() {
+    let mut crossing = Vec::new();
+    for (f, face) in polygons.faces().iter() {
         let corners = face.iter().map(|&v| at(v));
         for p in corners.clone() {
             low = low.min(p);
             high = high.max(p);
         }
-        for [a, b, c] in cutter.cut(corners, |_, _| false).triangles {
+        let cut = cutter.cut(corners, |_, _| false);
+        if cut.is_crossing {
+            crossing.push(f);
+        }
+        for [a, b, c] in cut.triangles {
             let [a, b, c] = [a, b, c].map(|&i| at(face[i]));
             let vector = (b - a).cross(c - a);
             area += vector.length() / 2.0;
@@ -89,7 +98,7 @@ pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -
             six_volumes += (a - origin.unwrap_or_default()).dot(vector);
         }
     }
-    Measures {
+    let measures = Measures {
         bounds: origin.map(|_| [low.to_array(), high.to_array()]),
         edge_lengths: (edges > 0).then(|| Lengths {
             least,
@@ -98,7 +107,8 @@ pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -
         }),
         area,
         volume: is_closed.then_some(six_volumes / 6.0),
-    }
+    };
+    (measures, crossing)
 }
 
 #[cfg(test)]

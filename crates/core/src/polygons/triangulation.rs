@@ -194,6 +194,8 @@ impl FaceParts {
 #[derive(Default)]
 pub struct PolygonCutter {
     corners: Vec<DVec3>,
+    /// The corners in the plane.
+    projected: Vec<DVec2>,
     ears: EarClipping,
     /// The triangles of the last polygon.
     triangles: Vec<[usize; 3]>,
@@ -320,12 +322,13 @@ impl PolygonCutter {
             return false;
         }
         let normal = plane::normal(&self.corners);
-        let along_axis = plane::along_axis(&self.corners, normal);
-        if let Some(triangles) = convex_quad(&self.corners, &along_axis, &is_edge) {
+        plane::project_along_axis(&self.corners, normal, &mut self.projected);
+        if let Some(triangles) = convex_quad(&self.corners, &self.projected, &is_edge) {
             self.triangles.extend(triangles);
             return false;
         }
         let mut least = f64::INFINITY;
+        let along_axis = std::mem::take(&mut self.projected);
         for method in [SIMPLE, TOUCHING, Method::Exhaustive] {
             least = self.improve(least, &along_axis, method, &is_edge);
             if least == 0.0 {
@@ -353,6 +356,7 @@ impl PolygonCutter {
     ) -> f64 {
         let Self {
             corners,
+            projected: _,
             ears,
             triangles,
             tried,

@@ -38,11 +38,9 @@ pub(super) fn turned_part(points: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
 pub(super) fn normal(corners: &[DVec3]) -> DVec3 {
     let area = area_vector(corners.iter().copied());
     let successive = || {
-        let n = corners.len();
-        (0..n).map(move |i| {
-            let [a, b, c] = [i, (i + 1) % n, (i + 2) % n].map(|i| corners[i]);
-            (b - a).cross(c - a)
-        })
+        let from = |first: usize| corners.iter().cycle().skip(first);
+        let triples = corners.iter().zip(from(1)).zip(from(2));
+        triples.map(|((&a, &b), &c)| (b - a).cross(c - a))
     };
     let size: f64 = successive().map(DVec3::length).sum();
     if area.length() > 1e-12 * size {
@@ -55,10 +53,10 @@ pub(super) fn normal(corners: &[DVec3]) -> DVec3 {
     successive().fold(area, longer)
 }
 
-/// Projects corners along the axis nearest to `normal`. In the projection, the polygon runs
+/// Projects corners into `projected` along the axis nearest to `normal`. In the projection, the polygon runs
 /// counter-clockwise. The projection copies coordinates bit by bit, so that collinear corners stay
 /// collinear. For a planar polygon it is affine.
-pub(super) fn along_axis(corners: &[DVec3], normal: DVec3) -> Vec<DVec2> {
+pub(super) fn project_along_axis(corners: &[DVec3], normal: DVec3, projected: &mut Vec<DVec2>) {
     let size = normal.abs();
     let project = |p: DVec3| {
         let (projected, component) = if size.z >= size.x && size.z >= size.y {
@@ -73,7 +71,8 @@ pub(super) fn along_axis(corners: &[DVec3], normal: DVec3) -> Vec<DVec2> {
             false => projected,
         }
     };
-    corners.iter().map(|&p| project(p)).collect()
+    projected.clear();
+    projected.extend(corners.iter().map(|&p| project(p)));
 }
 
 /// Projects corners onto the plane normal to `normal`. The coordinates are rounded.
