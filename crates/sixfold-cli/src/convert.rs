@@ -39,9 +39,10 @@ pub(crate) fn run(arguments: &Convert) -> Result<ExitCode, Failure> {
     text.finish()?;
     // A file of points is converted to points, if the format can hold them.
     let loses = |loss: &Loss| matches!(loss, Loss::IsolatedVertices(_));
-    let is_of_points = left_out == 0 && polygons.vertex_count() > 0 && !losses.iter().any(loses);
+    let is_of_points =
+        left_out.is_empty() && polygons.vertex_count() > 0 && !losses.iter().any(loses);
     match is_of_points {
         true => Ok(ExitCode::SUCCESS),
-        false => Ok(check_faces(left_out, &polygons, to)),
+        false => Ok(check_faces(left_out.len(), &polygons, to)),
     }
 }

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sixfold::glam::DVec3;
-use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, PolygonPlaces};
+use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, Place, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
-use sixfold::{Creases, PolygonMesh, shapes};
+use sixfold::{Creases, FaceId, PolygonMesh, VertexId, shapes};
 use sixfold_results::Results;
 use sixfold_study::{StudyMesh, sha256_of};
 
@@ -130,18 +130,103 @@ pub(crate) fn with_creases(
 ) -> Result<(PolygonMesh, Creases, [f64; 3]), Failure> {
     let ReadMesh {
         polygons,
+        places,
         creases,
         origin,
-        places,
         ..
     } = for_repair(path, chosen.files)?;
-    let is_cut = chosen.triangulate && polygons.first_polygon().is_some();
-    if !is_cut {
-        return Ok((polygons, creases, origin));
+    let polygons = cut_if_chosen(path, polygons, &places, chosen)?;
+    Ok((polygons, creases, origin))
+}
+
+/// Cuts polygons into triangles if `chosen` asks for it.
+fn cut_if_chosen(
+    path: &Path,
+    polygons: PolygonMesh,
+    places: &PolygonPlaces,
+    chosen: ReadPolygons,
+) -> Result<PolygonMesh, Failure> {
+    if !chosen.triangulate || polygons.first_polygon().is_none() {
+        return Ok(polygons);
     }
     let study_mesh = StudyMesh::new(shown(path), polygons);
-    let polygons = triangulated(study_mesh, Some(&places))?.polygons;
-    Ok((polygons, creases, origin))
+    Ok(triangulated(study_mesh, Some(places))?.polygons)
+}
+
+/// A mesh whose faces the user names with their numbers in the file.
+pub(crate) struct NumberedMesh {
+    pub(crate) polygons: PolygonMesh,
+    pub(crate) creases: Creases,
+    pub(crate) origin: [f64; 3],
+    pub(crate) numbers: FaceNumbers,
+}
+
+/// Which faces of a mesh are which ones of its file.
+pub(crate) struct FaceNumbers {
+    /// By face of the mesh: its number in the file, from 0. Ascending.
+    numbers: Vec<usize>,
+    /// The number of faces in the file.
+    in_file: usize,
+}
+
+impl FaceNumbers {
+    /// Returns the number of faces in the file.
+    pub(crate) fn in_file(&self) -> usize {
+        self.in_file
+    }
+
+    /// Returns the faces of the mesh that come from a face of the file: none if it was left out, several
+    /// if it was cut.
+    pub(crate) fn faces(&self, number: usize) -> impl Iterator<Item = FaceId> + use<> {
+        let first = self.numbers.partition_point(|&other| other < number);
+        let end = self.numbers.partition_point(|&other| other <= number);
+        (0..).map(FaceId::new).take(end).skip(first)
+    }
+
+    /// Returns the numbers for the faces after a change that keeps their order; `old` returns the face before.
+    pub(crate) fn after(&self, faces: usize, old: impl Fn(FaceId) -> FaceId) -> Self {
+        let all = (0..).map(FaceId::new).take(faces);
+        let numbers = all.map(|f| self.numbers[old(f).index()]);
+        Self {
+            numbers: numbers.collect(),
+            in_file: self.in_file,
+        }
+    }
+}
+
+/// Reads a mesh like [`with_creases`], with the numbers that its faces have in the file.
+pub(crate) fn with_face_numbers(
+    path: &Path,
+    chosen: ReadPolygons,
+) -> Result<NumberedMesh, Failure> {
+    let mesh = for_repair(path, chosen.files)?;
+    let faces = || mesh.polygons.faces().iter();
+    let place = |f| mesh.places.place(f, &mesh.polygons);
+    // Of faces at one place, one was cut into the others.
+    let kept = faces().map(|(f, _)| place(f));
+    let mut places: Vec<Place> = kept.chain(mesh.left_out.iter().copied()).collect();
+    places.sort_unstable();
+    places.dedup();
+    let number = |f| places.partition_point(|&other| other < place(f));
+    // A face is cut into triangles one after the other.
+    let parts = |face: &[VertexId]| {
+        if chosen.triangulate {
+            face.len() - 2
+        } else {
+            1
+        }
+    };
+    let numbers = faces().flat_map(|(f, face)| std::iter::repeat_n(number(f), parts(face)));
+    let numbers = FaceNumbers {
+        numbers: numbers.collect(),
+        in_file: places.len(),
+    };
+    Ok(NumberedMesh {
+        polygons: cut_if_chosen(path, mesh.polygons, &mesh.places, chosen)?,
+        creases: mesh.creases,
+        origin: mesh.origin,
+        numbers,
+    })
 }
 
 /// A mesh without its degenerate faces, and what reading changed.
@@ -152,8 +237,8 @@ pub(crate) struct ReadMesh {
     pub(crate) origin: [f64; 3],
     /// The places of the vertices and faces in the file.
     pub(crate) places: PolygonPlaces,
-    /// Number of degenerate faces that were left out.
-    pub(crate) left_out: usize,
+    /// The places of the degenerate faces that were left out.
+    pub(crate) left_out: Vec<Place>,
     /// Number of vertices that were joined to others at equal positions.
     pub(crate) joined: usize,
     /// The contents that were ignored.
@@ -176,7 +261,7 @@ pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Fail
         creases,
         origin,
         places,
-        left_out: left_out.len(),
+        left_out: left_out.iter().map(|face| face.place).collect(),
         joined,
         ignored,
     })
@@ -200,21 +285,6 @@ pub(crate) fn pair(
     let first = triangles_of(first, mesh)?;
     let mesh = read_mesh_at(second, chosen.files, Some(origin))?;
     Ok(([first, triangles_of(second, mesh)?], origin))
-}
-
-/// Reads a mesh for a command that drops creases. Prints a note if there are creases.
-pub(crate) fn without_creases(
-    path: &Path,
-    chosen: ReadPolygons,
-) -> Result<(PolygonMesh, [f64; 3]), Failure> {
-    let (polygons, creases, origin) = with_creases(path, chosen)?;
-    if !creases.is_empty() {
-        let file = shown(path);
-        print_notice(&format!(
-            "note: {file}: the result does not keep sharp edges and vertices"
-        ));
-    }
-    Ok((polygons, origin))
 }
 
 /// Returns the file of results. If `place` is a folder, this is the file `results.json` in the

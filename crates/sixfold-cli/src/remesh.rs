@@ -96,7 +96,8 @@ fn edit_file(
     edit: impl FnOnce(&PolygonMesh) -> Edited,
 ) -> Result<ExitCode, Failure> {
     // Check here, because the error of a structure would not name the command that helps.
-    let (before, output) = files.open(read, check_triangles)?;
+    let (before, creases, output) = files.open(read, check_triangles)?;
+    files.note_lost(&creases);
     let (before, _) = without_seams(&files.mesh, before, Creases::default(), read.files);
     let (polygons, EditSummary { edits, shortfall }) = edit(&before)?;
     output.write(&polygons, &WriteOptions::default())?;

@@ -231,7 +231,7 @@ fn failure(error: &RepairError) -> Failure {
 fn print_reading(read: &ReadMesh, text: &mut TextOutput) {
     let parts = [
         (read.joined, "vertices joined"),
-        (read.left_out, "faces left out"),
+        (read.left_out.len(), "faces left out"),
     ];
     let present = parts.into_iter().filter(|&(count, _)| count > 0);
     let parts: Vec<String> = present
@@ -334,11 +334,11 @@ impl<'a> Report<'a> {
         Self {
             before: Size {
                 vertices: read.polygons.vertex_count() + read.joined,
-                faces: read.polygons.face_count() + read.left_out,
+                faces: read.polygons.face_count() + read.left_out.len(),
             },
             reading: Reading {
                 vertices_joined: read.joined,
-                faces_left_out: read.left_out,
+                faces_left_out: read.left_out.len(),
             },
             after: Size {
                 vertices: repaired.polygons.vertex_count(),

@@ -27,13 +27,19 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
         iterations: arguments.iterations,
     };
     let mut before = PolygonMesh::default();
-    let after = reshape_file(&arguments.files, arguments.read, "smoothed", |polygons| {
-        let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
-        (before, _) = without_seams(mesh, polygons, Creases::default(), files);
-        let mut mesh = build(&arguments.backend, &before)?;
-        mesh.smooth(&smoothing).map_err(smoothing_failure)?;
-        Ok(mesh.to_polygons())
-    })?;
+    let after = reshape_file(
+        &arguments.files,
+        arguments.read,
+        "smoothed",
+        |polygons, creases| {
+            let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
+            let (joined, creases) = without_seams(mesh, polygons, creases, files);
+            before = joined;
+            let mut mesh = build(&arguments.backend, &before)?;
+            mesh.smooth(&smoothing).map_err(smoothing_failure)?;
+            Ok((mesh.to_polygons(), creases))
+        },
+    )?;
     Ok(check_shape(
         &before,
         &after,
@@ -44,13 +50,22 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
 
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
     let mut before = 0;
-    let after = reshape_file(&arguments.files, arguments.read, "the dual", |polygons| {
-        before = polygons.face_count();
-        let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
-        let (polygons, _) = without_seams(mesh, polygons, Creases::default(), files);
-        let mesh = build(&arguments.backend, &polygons)?;
-        mesh.dual().map_err(|error| dual_failure(error, &polygons))
-    })?;
+    let after = reshape_file(
+        &arguments.files,
+        arguments.read,
+        "the dual",
+        |polygons, creases| {
+            before = polygons.face_count();
+            arguments.files.note_lost(&creases);
+            let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
+            let (polygons, _) = without_seams(mesh, polygons, Creases::default(), files);
+            let mesh = build(&arguments.backend, &polygons)?;
+            let dual = mesh
+                .dual()
+                .map_err(|error| dual_failure(error, &polygons))?;
+            Ok((dual, Creases::default()))
+        },
+    )?;
     Ok(check_faces(before, &after, &arguments.files.output))
 }
 
@@ -60,10 +75,10 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
         files: arguments.read,
     };
     let mut before = 0;
-    let after = reshape_file(&arguments.files, read, "triangles", |triangles| {
+    let after = reshape_file(&arguments.files, read, "triangles", |triangles, creases| {
         before = triangles.face_count();
         let Some(facing) = arguments.orient else {
-            return Ok(triangles);
+            return Ok((triangles, creases));
         };
         let orient = Step::Orient {
             facing,
@@ -73,25 +88,26 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
         for left in repaired.steps.iter().flat_map(|step| &step.left) {
             print_notice(&format!("note: {}: {left}", shown(&arguments.files.mesh)));
         }
-        Ok(repaired.polygons)
+        let (creases, _) = repaired.carried_creases(&creases);
+        Ok((repaired.polygons, creases))
     })?;
     Ok(check_faces(before, &after, &arguments.files.output))
 }
 
-/// Reads a mesh, changes it and writes it. Returns the changed mesh.
+/// Reads a mesh with its creases, changes both, and writes them. Returns the changed mesh.
 fn reshape_file(
     files: &MeshInOut,
     read: ReadPolygons,
     what: &str,
-    change: impl FnOnce(PolygonMesh) -> Result<PolygonMesh, Failure>,
+    change: impl FnOnce(PolygonMesh, Creases) -> Result<(PolygonMesh, Creases), Failure>,
 ) -> Result<PolygonMesh, Failure> {
-    let (polygons, output) = files.open(read, |_| Ok(()))?;
+    let (polygons, creases, output) = files.open(read, |_| Ok(()))?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));
-    let changed = change(polygons);
+    let changed = change(polygons, creases);
     spinner.clear();
-    let changed = changed?;
-    output.write(&changed, &WriteOptions::default())?;
+    let (changed, creases) = changed?;
+    output.write(&changed, &WriteOptions::default().with_creases(&creases))?;
     let to = &files.output;
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sixfold::repair::{Step, Weld, repair};
+use sixfold::repair::{Repaired, Step, Weld, repair};
 use sixfold::{Creases, Facts, PolygonMesh};
 use sixfold_results::numbers::counted;
 
@@ -18,19 +18,29 @@ pub(crate) fn without_seams(
     creases: Creases,
     chosen: ReadFiles,
 ) -> (PolygonMesh, Creases) {
-    if chosen.as_stored {
-        return (polygons, creases);
+    match joined(path, &polygons, chosen) {
+        Some(joined) => {
+            let (creases, _) = joined.carried_creases(&creases);
+            (joined.polygons, creases)
+        }
+        None => (polygons, creases),
     }
-    let Ok(welded) = repair(&polygons, &[Step::Weld(Weld::default())]) else {
-        return (polygons, creases); // the command names what is wrong with the mesh
-    };
+}
+
+/// Joins vertices as [`without_seams`] does, if this closes seams.
+pub(crate) fn joined(path: &Path, polygons: &PolygonMesh, chosen: ReadFiles) -> Option<Repaired> {
+    if chosen.as_stored {
+        return None;
+    }
+    // If this fails, the command names what is wrong with the mesh.
+    let welded = repair(polygons, &[Step::Weld(Weld::default())]).ok()?;
     let joined = welded.steps[0].counts.vertices_merged;
     if joined == 0 {
-        return (polygons, creases);
+        return None;
     }
-    let [before, after] = [&polygons, &welded.polygons].map(Facts::from_polygons);
+    let [before, after] = [polygons, &welded.polygons].map(Facts::from_polygons);
     if after.boundary_edges >= before.boundary_edges {
-        return (polygons, creases);
+        return None;
     }
     let closed = before.boundary_edges - after.boundary_edges;
     let file = shown(path);
@@ -42,13 +52,12 @@ pub(crate) fn without_seams(
             "note: {file}: {edges} are at the positions of others and may come apart: `sixfold \
              repair --weld --cut` joins them"
         ));
-        return (polygons, creases);
+        return None;
     }
     let vertices = counted(joined, "vertex", "vertices");
     print_notice(&format!(
         "note: {file}: joined {vertices} to others at equal positions, which closes {edges}: \
          --as-stored keeps them apart"
     ));
-    let (creases, _) = welded.carried_creases(&creases);
-    (welded.polygons, creases)
+    Some(welded)
 }

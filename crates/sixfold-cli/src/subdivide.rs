@@ -47,13 +47,14 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     }
     let method = method(arguments)?;
     let mesh = &arguments.files.mesh;
-    let (polygons, creases, origin) = load::with_creases(mesh, arguments.read)?;
-    let (polygons, mut creases) = without_seams(mesh, polygons, creases, arguments.read.files);
+    let (polygons, mut creases, origin) = load::with_creases(mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
+        // The numbers of the list are those of the file, so vertices are joined after it is read.
         let listed = read_creases(path, &polygons).map_err(Failure::usage)?;
         creases = creases.updated_with(&listed);
     }
+    let (polygons, creases) = without_seams(mesh, polygons, creases, arguments.read.files);
     let forecast = Forecast::new(
         &subdivision,
         method,

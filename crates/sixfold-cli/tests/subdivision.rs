@@ -84,6 +84,102 @@ fn creases_of_files_and_tags_stay_sharp() {
     );
 }
 
+/// A cube whose upper face has vertices of its own, and a line that no face can have before it.
+const SEAMED: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n\
+    v 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n\
+    f 1 1 2\nf 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 9 10 11 12\n";
+
+/// Lists of the user have the numbers of the file, also if vertices are joined, or faces left out or cut.
+#[test]
+fn lists_name_the_elements_of_the_file() {
+    let sixfold = Sixfold::new();
+    sixfold.file("seamed.obj", SEAMED);
+    // Joined first: without the repeated vertices and the degenerate face.
+    run_ok(
+        &sixfold,
+        &["repair", "seamed.obj", "--weld", "-o", "joined.obj"],
+    );
+    assert_eq!(Obj::parse(&text(&sixfold, "joined.obj")).positions.len(), 8);
+    // The same edge by the copies of its ends, and without them.
+    sixfold.file("own.txt", "edge 8 9 inf\ncorner 11 inf\n");
+    sixfold.file("below.txt", "edge 4 5 inf\ncorner 7 inf\n");
+    let refined = |creases, mesh| subdivided(&sixfold, &["--creases", creases, mesh]).positions;
+    let expected = refined("below.txt", "joined.obj");
+    assert_eq!(refined("own.txt", "seamed.obj"), expected);
+    assert_eq!(refined("below.txt", "seamed.obj"), expected);
+    let other = subdivided(&sixfold, &["joined.obj"]).positions;
+    assert_ne!(other, expected);
+
+    // Face 6 of the file, which names vertices 8 to 11, is cut into two triangles; face 0 is left out.
+    sixfold.file("faces.txt", "\u{feff}6 # the upper one\n0\n");
+    sixfold.file("joined.txt", "5\n");
+    let refine = |faces: &str, mesh| {
+        let select = format!("faces:{faces}");
+        let part = ["--scheme", "midpoint", "--triangulate", "--select"];
+        let rest = [select.as_str(), mesh, "-o", "part.obj"];
+        let run = run_ok(&sixfold, &[&["subdivide"], &part[..], &rest[..]].concat());
+        (run.stderr, Obj::parse(&text(&sixfold, "part.obj")))
+    };
+    let (notes, part) = refine("faces.txt", "seamed.obj");
+    assert!(
+        notes.contains("faces.txt:2: face 0 was left out"),
+        "{notes}"
+    );
+    assert_eq!(
+        part.positions,
+        refine("joined.txt", "joined.obj").1.positions
+    );
+    assert!(
+        part.positions.contains(&[1.0, 0.0, 2.0]),
+        "the upper face is refined"
+    );
+    assert!(!part.positions.contains(&[1.0, 0.0, 0.0]));
+    sixfold.file("faces.txt", "7\n");
+    let arguments = [
+        "subdivide",
+        "--scheme",
+        "midpoint",
+        "--triangulate",
+        "--select",
+    ];
+    let rest = ["faces:faces.txt", "seamed.obj", "-o", "part.obj"];
+    let message = "faces.txt:1: face 7 does not exist: the file has 7 faces";
+    assert_refused(&sixfold, &[&arguments[..], &rest].concat(), 2, message);
+}
+
+/// Commands that keep the edges keep their sharpness.
+#[test]
+fn creases_are_kept_where_edges_are() {
+    let sixfold = Sixfold::new();
+    let tags = "t crease 2/1/0 8 9 2.5\nt corner 1/1/0 11 inf\n";
+    sixfold.file("seamed.obj", &format!("{SEAMED}{tags}"));
+    let lines = |command: &[&str]| {
+        let run = run_ok(
+            &sixfold,
+            &[command, &["seamed.obj", "-o", "out.obj"]].concat(),
+        );
+        let out = text(&sixfold, "out.obj");
+        let tags = out.lines().filter(|line| line.starts_with("t "));
+        (run.stderr, tags.map(str::to_owned).collect::<Vec<_>>())
+    };
+    let as_stored = ["t crease 2/1/0 8 9 2.5", "t corner 1/1/0 11 inf"];
+    assert_eq!(lines(&["triangulate"]).1, as_stored);
+    assert_eq!(lines(&["triangulate", "--orient", "outward"]).1, as_stored);
+    assert_eq!(lines(&["smooth", "--as-stored"]).1, as_stored);
+    assert_eq!(
+        lines(&["smooth"]).1,
+        ["t crease 2/1/0 4 5 2.5", "t corner 1/1/0 7 inf"]
+    );
+    for command in [
+        &["dual"][..],
+        &["decimate", "--triangulate", "--ratio", "0.9"],
+    ] {
+        let (notes, tags) = lines(command);
+        assert!(notes.contains("does not keep sharp edges"), "{notes}");
+        assert_eq!(tags, [""; 0]);
+    }
+}
+
 #[test]
 fn limits_lie_on_the_surface() {
     let sixfold = Sixfold::new();
@@ -162,7 +258,7 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
         ]
     };
     for (what, message) in [
-        ("faces:wrong.txt", "wrong.txt: face f4 does not exist"),
+        ("faces:wrong.txt", "wrong.txt:2: face 4 does not exist"),
         ("faces:words.txt", "words.txt:2"),
         ("faces:missing.txt", "missing.txt"),
         ("box:1,0,0,0,1,1", "lower corner of the box first"),
@@ -405,7 +501,8 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
     }
     let run = run_ok(&sixfold, &["triangulate", "tagged.obj", "-o", "-"]);
     assert_eq!(Obj::parse(&run.stdout).counts(), [4, 2]);
-    assert!(run.stderr.contains("does not keep"), "{run:?}");
+    assert!(run.stdout.ends_with("\nt crease 2/1/0 0 1 2\n"), "{run:?}");
+    assert_eq!(run.stderr, "");
     for (arguments, code, message) in [
         (&["smooth", "book.obj"][..], 3, "another --backend"),
         (

@@ -12,11 +12,11 @@ use sixfold::{FaceId, PolygonMesh};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, FaceNumbers, NumberedMesh};
 use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
-use crate::seams::without_seams;
+use crate::seams::joined;
 use crate::shape_check::check_faces;
 use crate::text::{TextOutput, print_notice, sanitize};
 use sixfold_results::numbers::{counted, grouped};
@@ -31,16 +31,22 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         check_not_overwritten("the list of faces", path, &outputs)?;
     }
     let mesh = &arguments.files.mesh;
-    let (polygons, creases, origin) = load::with_creases(mesh, arguments.read)?;
-    let (polygons, creases) = without_seams(mesh, polygons, creases, arguments.read.files);
+    let NumberedMesh {
+        mut polygons,
+        creases,
+        origin,
+        mut numbers,
+    } = load::with_face_numbers(mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
-    let selection = selection(select, origin)?;
+    if let Some(joined) = joined(mesh, &polygons, arguments.read.files) {
+        let old = |f| joined.faces.old_elements(f)[0];
+        numbers = numbers.after(joined.polygons.face_count(), old);
+        polygons = joined.polygons;
+    }
+    let selection = selection(select, &numbers, origin)?;
     selection
         .check(polygons.face_count())
-        .map_err(|error| match select {
-            Select::Faces(path) => Failure::usage(format!("{}: {error}", path.display())),
-            _ => Failure::usage(error),
-        })?;
+        .map_err(Failure::usage)?;
     let output = MeshOutput::open(&arguments.files.output, arguments.files.write, origin)?;
     let spinner = Spinner::start(format!("refining {}", shown(&arguments.files.mesh)));
     let refined = refine(arguments, &polygons, &selection);
@@ -99,11 +105,16 @@ fn check_options(arguments: &Subdivide) -> Result<(), Failure> {
     }
 }
 
-/// Returns the selection in a mesh whose origin is at `origin` in the file. Boxes are those of the file.
-fn selection(select: &Select, origin: [f64; 3]) -> Result<Selection, Failure> {
+/// Returns the selection in a mesh whose origin is at `origin` in the file. Boxes and the numbers of faces
+/// are those of the file.
+fn selection(
+    select: &Select,
+    numbers: &FaceNumbers,
+    origin: [f64; 3],
+) -> Result<Selection, Failure> {
     let moved = |corner: &[f64; 3]| (DVec3::from(*corner) - DVec3::from(origin)).as_vec3();
     Ok(match select {
-        Select::Faces(path) => Selection::Faces(read_face_list(path)?),
+        Select::Faces(path) => Selection::Faces(read_face_list(path, numbers)?),
         Select::Box(min, max) => Selection::Box {
             min: moved(min),
             max: moved(max),
@@ -112,24 +123,40 @@ fn selection(select: &Select, origin: [f64; 3]) -> Result<Selection, Failure> {
     })
 }
 
-/// Reads a list of face numbers, which are separated by spaces. `#` begins a comment.
-fn read_face_list(path: &Path) -> Result<Vec<FaceId>, Failure> {
+/// Reads a list of face numbers, which are separated by spaces. `#` begins a comment; a byte order mark is
+/// skipped.
+fn read_face_list(path: &Path, numbers: &FaceNumbers) -> Result<Vec<FaceId>, Failure> {
     let shown = path.display();
     let text = fs::read_to_string(path).map_err(|cause| {
         Failure::usage(format!(
             "{shown}: cannot be read ({cause}): name a text file with face numbers"
         ))
     })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let in_file = numbers.in_file();
     let mut faces = Vec::new();
-    for (number, line) in (1..).zip(text.lines()) {
+    for (line_number, line) in (1..).zip(text.lines()) {
+        let at = format_args!("{shown}:{line_number}");
         let content = line.split('#').next().unwrap_or_default();
         for word in content.split_whitespace() {
-            let face: u32 = word.parse().map_err(|_| {
+            let number: usize = word.parse().map_err(|_| {
                 Failure::usage(format!(
-                    "{shown}:{number}: `{word}` is not a face: write numbers from 0, one or more per line"
+                    "{at}: `{word}` is not a face: write numbers from 0, one or more per line"
                 ))
             })?;
-            faces.push(FaceId::new(face));
+            if number >= in_file {
+                let has = counted(in_file, "face", "faces");
+                return Err(Failure::usage(format!(
+                    "{at}: face {number} does not exist: the file has {has}, counted from 0"
+                )));
+            }
+            let before = faces.len();
+            faces.extend(numbers.faces(number));
+            if faces.len() == before {
+                print_notice(&format!(
+                    "note: {at}: face {number} was left out of the mesh, so it is not selected"
+                ));
+            }
         }
     }
     Ok(faces)
