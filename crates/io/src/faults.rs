@@ -57,6 +57,11 @@ pub enum GltfFault {
     /// The text of an embedded buffer is invalid.
     #[error("its embedded data is not base64 text: export the file again")]
     Base64,
+    /// A morph target does not have as many positions as the mesh.
+    #[error(
+        "it has {found} positions, but the positions that it moves are {expected}: export again"
+    )]
+    TargetCount { found: u64, expected: u64 },
     /// A node is reached twice.
     #[error("it has several parents, or is its own ancestor: export the file again")]
     NodeRepeated,

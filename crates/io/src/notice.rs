@@ -44,8 +44,12 @@ pub enum IgnoredKind {
     OtherPrimitives,
     /// Meshes of glTF that are not part of the scene.
     UnusedMeshes,
-    /// Animations and morphs of glTF.
+    /// Animations, and morph targets whose weight is 0, of glTF.
     Deformations,
+    /// Translations, rotations and scales of nodes of glTF that also have a matrix.
+    NodeTransforms,
+    /// Nodes of glTF that have meshes and are not part of the scene.
+    UnusedNodes,
     /// Meshes of glTF that are bound to the joints of a skin. Their vertices stay as they are stored:
     /// neither the joints nor the place of the node move them.
     Skins,
@@ -162,6 +166,14 @@ impl IgnoredKind {
             ],
             Self::UnusedMeshes => ["mesh outside the scene", "meshes outside the scene"],
             Self::Deformations => ["animation or morph", "animations and morphs"],
+            Self::NodeTransforms => [
+                "translation, rotation or scale beside a matrix",
+                "translations, rotations and scales beside a matrix",
+            ],
+            Self::UnusedNodes => [
+                "node with a mesh outside the scene",
+                "nodes with meshes outside the scene",
+            ],
             Self::Skins => ["skin of a mesh", "skins of meshes"],
             Self::Instances => ["list of instances", "lists of instances"],
             Self::Extensions => ["extension", "extensions"],

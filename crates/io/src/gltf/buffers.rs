@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
-use super::document::{Document, Uri};
+use super::document::{Document, Primitive, Uri};
 use super::{fault, item};
 use crate::error::ReadError;
 use crate::excerpt::shortened;
@@ -157,11 +157,7 @@ impl Files {
 fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError> {
     let mut used = vec![false; document.buffers.len()];
     let primitives = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let accessors = primitives.flat_map(|primitive| {
-        let position = primitive.attributes.get("POSITION").copied();
-        position.into_iter().chain(primitive.indices)
-    });
-    for number in accessors {
+    for number in primitives.flat_map(Primitive::accessors) {
         // An accessor that does not exist is reported when its mesh is read.
         let Some(accessor) = document.accessors.get(number) else {
             continue;

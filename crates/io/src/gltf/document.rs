@@ -72,6 +72,8 @@ pub(super) struct Node {
     /// A unit quaternion x, y, z, w.
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    /// The weights of the morph targets of the mesh, in the place of those of the mesh.
+    pub(super) weights: Option<Vec<f64>>,
     #[serde(default)]
     pub(super) extensions: BTreeMap<String, IgnoredAny>,
 }
@@ -80,6 +82,9 @@ pub(super) struct Node {
 pub(super) struct Mesh {
     #[serde(default)]
     pub(super) primitives: Vec<Primitive>,
+    /// The weights of the morph targets of each primitive; 0 if they are missing.
+    #[serde(default)]
+    pub(super) weights: Vec<f64>,
 }
 
 /// A list of triangles, points or lines.
@@ -92,10 +97,21 @@ pub(super) struct Primitive {
     #[serde(default = "triangles")]
     pub(super) mode: u32,
     pub(super) material: Option<usize>,
+    /// Morph targets: the accessors with what is added to the data of vertices, times a weight.
     #[serde(default)]
-    pub(super) targets: Vec<IgnoredAny>,
+    pub(super) targets: Vec<BTreeMap<String, usize>>,
     #[serde(default)]
     pub(super) extensions: BTreeMap<String, IgnoredAny>,
+}
+
+impl Primitive {
+    /// Returns the accessors of the positions, of the indices, and of the positions of morph targets.
+    pub(super) fn accessors(&self) -> impl Iterator<Item = usize> {
+        let position = |data: &BTreeMap<String, usize>| data.get("POSITION").copied();
+        let targets = self.targets.iter().filter_map(position);
+        let base = position(&self.attributes).into_iter();
+        base.chain(self.indices).chain(targets)
+    }
 }
 
 fn triangles() -> u32 {

@@ -134,7 +134,7 @@ fn accessors(primitive: &Primitive) -> impl Iterator<Item = usize> {
 fn used_views(document: &Document) -> Vec<bool> {
     let mut used = vec![false; document.buffer_views.len()];
     let primitives = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    for number in primitives.flat_map(accessors) {
+    for number in primitives.flat_map(Primitive::accessors) {
         let Some(accessor) = document.accessors.get(number) else {
             continue;
         };

@@ -65,7 +65,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         let document = self.document;
         if document.scenes.is_empty() && document.nodes.is_empty() {
             for mesh in 0..document.meshes.len() {
-                self.read_mesh(mesh, DMat4::IDENTITY, ("mesh", mesh))?;
+                self.read_mesh(mesh, DMat4::IDENTITY, None, ("mesh", mesh))?;
             }
             return Ok(());
         }
@@ -82,14 +82,15 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         self.read_nodes(roots)?;
         let unused = self.used.iter().filter(|used| !**used).count();
         if let Some(number) = self.used.iter().position(|used| !used) {
-            let place = Place::Item {
-                kind: "mesh",
-                number,
-            };
-            let notices = &mut self.builder.notices;
-            notices.add_many(IgnoredKind::UnusedMeshes, unused as u64, place);
+            self.note("mesh", number, IgnoredKind::UnusedMeshes, unused);
         }
         Ok(())
+    }
+
+    fn note(&mut self, kind: &'static str, number: usize, ignored: IgnoredKind, count: usize) {
+        let place = Place::Item { kind, number };
+        let notices = &mut self.builder.notices;
+        notices.add_many(ignored, count as u64, place);
     }
 
     fn nodes_without_parent(&self) -> Vec<usize> {
@@ -123,11 +124,32 @@ impl<'a, 'b> SceneReader<'a, 'b> {
             }
             let place = parent * local_transform(node);
             let by = ("node", number);
+            if node.matrix.is_some() {
+                let others = [
+                    node.translation.is_some(),
+                    node.rotation.is_some(),
+                    node.scale.is_some(),
+                ];
+                let count = others.into_iter().filter(|&is_given| is_given).count();
+                let kind = IgnoredKind::NodeTransforms;
+                self.note("node", number, kind, count);
+            }
             if let Some(mesh) = node.mesh {
                 let place = self.mesh_place(node, place, number)?;
-                self.read_mesh(mesh, place, by)?;
+                self.read_mesh(mesh, place, node.weights.as_deref(), by)?;
             }
             stack.extend(node.children.iter().rev().map(|&child| (child, place, by)));
+        }
+        let unused = (0..nodes.len()).filter(|&n| !visited[n]);
+        let unused = unused.filter_map(|n| Some((n, nodes[n].mesh?)));
+        for (_, mesh) in unused.clone() {
+            // The note about the node says it.
+            if let Some(is_used) = self.used.get_mut(mesh) {
+                *is_used = true;
+            }
+        }
+        if let Some((first, _)) = unused.clone().next() {
+            self.note("node", first, IgnoredKind::UnusedNodes, unused.count());
         }
         Ok(())
     }
@@ -158,31 +180,38 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         Ok(DMat4::IDENTITY)
     }
 
-    /// Adds a mesh at a place.
+    /// Adds a mesh at a place. `weights` are those of its morph targets, if the node has some.
     fn read_mesh(
         &mut self,
         number: usize,
         place: DMat4,
+        weights: Option<&[f64]>,
         by: (&'static str, usize),
     ) -> Result<(), ReadError> {
         let mesh = item(&self.document.meshes, "mesh", number, by, self.buffers.name)?;
         self.used[number] = true;
-        // Primitives that share positions share vertices.
-        let mut first_vertices: HashMap<usize, usize> = HashMap::new();
+        let weights = weights.unwrap_or(&mesh.weights);
+        // Primitives that share positions and what moves them share vertices.
+        let mut first_vertices: HashMap<(usize, Vec<(usize, u64)>), usize> = HashMap::new();
         for primitive in &mesh.primitives {
             // A scene can repeat a mesh whose primitives are empty.
-            let parts = 1 + primitive.attributes.len() as u64;
+            let parts = 1 + (primitive.attributes.len() + primitive.targets.len()) as u64;
             self.spend(PRIMITIVE_COST.saturating_mul(parts))?;
-            self.note_ignored(primitive, number);
+            let morphs = morphs(primitive, weights);
+            self.note_ignored(primitive, morphs.len(), number);
             let Some(&positions) = primitive.attributes.get("POSITION") else {
                 continue;
             };
-            let first = match first_vertices.get(&positions) {
+            let bits = morphs
+                .iter()
+                .map(|&(target, weight)| (target, weight.to_bits()));
+            let key = (positions, bits.collect());
+            let first = match first_vertices.get(&key) {
                 Some(&first) => first,
                 None => {
                     let first = self.builder.vertex_count();
-                    self.read_positions(positions, place, ("mesh", number))?;
-                    first_vertices.insert(positions, first);
+                    self.read_positions(positions, &morphs, place, ("mesh", number))?;
+                    first_vertices.insert(key, first);
                     first
                 }
             };
@@ -199,7 +228,8 @@ impl<'a, 'b> SceneReader<'a, 'b> {
     }
 
     /// Counts the data of a primitive that is not kept.
-    fn note_ignored(&mut self, primitive: &Primitive, number: usize) {
+    /// `morphs` is the number of morph targets that are applied.
+    fn note_ignored(&mut self, primitive: &Primitive, morphs: usize, number: usize) {
         let place = Place::Item {
             kind: "mesh",
             number,
@@ -228,7 +258,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         );
         notices.add_many(
             IgnoredKind::Deformations,
-            primitive.targets.len() as u64,
+            (primitive.targets.len() - morphs) as u64,
             place,
         );
         // Points without indices are the vertices, which are kept.
@@ -252,15 +282,26 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         Ok(())
     }
 
-    /// Adds the vertices of an accessor.
+    /// Adds the vertices of an accessor, moved by `morphs`.
     fn read_positions(
         &mut self,
         number: usize,
+        morphs: &[(usize, f64)],
         place: DMat4,
         by: (&'static str, usize),
     ) -> Result<(), ReadError> {
         let mut positions = elements(self.document, self.buffers, number, 3, by)?;
-        self.spend(positions.count)?;
+        self.spend(positions.count.saturating_mul(1 + morphs.len() as u64))?;
+        let mut targets = Vec::with_capacity(morphs.len());
+        for &(target, weight) in morphs {
+            let moves = elements(self.document, self.buffers, target, 3, by)?;
+            if moves.count != positions.count {
+                let (found, expected) = (moves.count, positions.count);
+                let counts = GltfFault::TargetCount { found, expected };
+                return Err(fault(self.buffers.name, "accessor", target, counts));
+            }
+            targets.push((target, weight, moves));
+        }
         if !positions.is_unbounded() {
             let count = usize::try_from(positions.count).unwrap_or(0);
             self.builder.reserve_vertices(count);
@@ -270,8 +311,14 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         for vertex in 0..positions.count {
             let position = positions.position(vertex);
             let mut position = position.map_err(|f| fault(self.buffers.name, kind, number, f))?;
-            if !stays {
-                let moved = place.transform_point3(DVec3::from_array(position.map(|c| c.wide)));
+            if !stays || !targets.is_empty() {
+                let mut moved = DVec3::from_array(position.map(|c| c.wide));
+                for (target, weight, moves) in &mut targets {
+                    let by = moves.position(vertex);
+                    let by = by.map_err(|f| fault(self.buffers.name, kind, *target, f))?;
+                    moved += *weight * DVec3::from_array(by.map(|c| c.wide));
+                }
+                let moved = place.transform_point3(moved);
                 position = moved.to_array().map(Coordinate::from);
             }
             self.builder
@@ -279,6 +326,16 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         }
         Ok(())
     }
+}
+
+/// Returns the morph targets of a primitive that move its positions: the accessor of each, and its weight.
+fn morphs(primitive: &Primitive, weights: &[f64]) -> Vec<(usize, f64)> {
+    let targets = primitive.targets.iter().zip(weights);
+    let applied = targets.filter_map(|(target, &weight)| {
+        let &accessor = target.get("POSITION").filter(|_| weight != 0.0)?;
+        Some((accessor, weight))
+    });
+    applied.collect()
 }
 
 /// Returns the place of a node relative to its parent.

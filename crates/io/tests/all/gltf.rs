@@ -165,6 +165,90 @@ fn nodes_move_and_mirror_their_meshes() {
     assert_eq!(faces(&mesh), [[0, 1, 2], [0, 2, 3], [5, 4, 6], [6, 4, 7]]);
 }
 
+/// The weights of a node, or of its mesh, are the pose of the file.
+#[test]
+fn morph_targets_are_applied_with_the_default_weights() {
+    let mut parts = Parts::square();
+    // Moves the last vertex by 2 upwards.
+    let values = parts.add_view(
+        [0.0_f32, 0.0, 2.0]
+            .iter()
+            .flat_map(|x| x.to_le_bytes())
+            .collect(),
+    );
+    let indices = parts.add_view(vec![3]);
+    let sparse = json!({
+        "componentType": 5126, "count": 4, "type": "VEC3",
+        "sparse": {
+            "count": 1,
+            "indices": {"bufferView": indices, "componentType": 5121},
+            "values": {"bufferView": values},
+        },
+    });
+    let accessors = parts.document["accessors"].as_array_mut().expect("a list");
+    accessors.push(sparse);
+    let target = accessors.len() - 1;
+    let primitive = &mut parts.document["meshes"][0]["primitives"][0];
+    primitive["targets"] = json!([{"POSITION": target, "NORMAL": 77}, {"POSITION": target}]);
+    let heights = |parts: &Parts| {
+        let mesh = parts.read();
+        let notices = notices(&mesh);
+        let heights: Vec<f32> = mesh.positions.iter().map(|p| p.z).collect();
+        (heights, notices)
+    };
+    let both = "ignored 2 animations and morphs (first at mesh 0)".to_owned();
+    assert_eq!(heights(&parts), (vec![0.0; 4], vec![both]));
+    parts.document["meshes"][0]["weights"] = json!([1.0]);
+    let one = || vec!["ignored 1 animation or morph (mesh 0)".to_owned()];
+    assert_eq!(heights(&parts), (vec![0.0, 0.0, 0.0, 2.0], one()));
+    parts.document["meshes"][0]["weights"] = json!([0.5, -0.25]);
+    assert_eq!(heights(&parts), (vec![0.0, 0.0, 0.0, 0.5], vec![]));
+    // A node has weights of its own, and a place.
+    parts.document["nodes"] = json!([
+        {"mesh": 0, "weights": [0.0, 2.0], "translation": [0, 0, 1]},
+        {"mesh": 0},
+    ]);
+    let expected = vec![1.0, 1.0, 1.0, 5.0, 0.0, 0.0, 0.0, 0.5];
+    assert_eq!(heights(&parts), (expected, one()));
+    // A primitive with the same positions and other targets has vertices of its own.
+    let mut second = parts.document["meshes"][0]["primitives"][0].clone();
+    second["targets"] = json!([]);
+    let primitives = parts.document["meshes"][0]["primitives"].as_array_mut();
+    primitives.expect("a list").push(second);
+    parts.document["nodes"] = json!([{"mesh": 0}]);
+    assert_eq!(heights(&parts).0, [0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0]);
+    parts.document["accessors"][target]["count"] = json!(5);
+    parts.assert_refused(&format!(
+        "accessor {target}: it has 5 positions, but the positions that it moves are 4: export again"
+    ));
+}
+
+#[test]
+fn what_a_scene_or_a_node_leaves_out_is_named() {
+    let mut parts = Parts::square();
+    let meshes = parts.document["meshes"].as_array_mut().expect("a list");
+    for _ in 0..2 {
+        meshes.push(meshes[0].clone());
+    }
+    parts.document["nodes"] = json!([
+        {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1], "scale": [2, 2, 2],
+            "translation": [9, 9, 9]},
+        {"mesh": 0},
+        {"mesh": 1},
+    ]);
+    parts.document["scenes"] = json!([{"nodes": [0]}]);
+    let mesh = parts.read();
+    assert_eq!(mesh.positions[0].x, 3.0);
+    assert_eq!(
+        notices(&mesh),
+        [
+            "ignored 2 translations, rotations and scales beside a matrix (first at node 0)",
+            "ignored 2 nodes with meshes outside the scene (first at node 1)",
+            "ignored 1 mesh outside the scene (mesh 2)",
+        ]
+    );
+}
+
 #[test]
 fn rotations_of_any_length_do_not_scale() {
     for (rotation, expected) in [
