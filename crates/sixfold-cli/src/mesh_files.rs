@@ -105,7 +105,13 @@ fn rounding_note(mesh: &FileMesh, chosen: ReadFiles) -> Option<String> {
         ),
         false => String::new(),
     };
-    let way_out = match chosen.recentre {
+    // Moving helps where coordinates are large beside the mesh, and not where they are tiny.
+    let far = low
+        .as_dvec3()
+        .abs()
+        .max(high.as_dvec3().abs())
+        .max_element();
+    let way_out = match chosen.recentre || far <= size {
         true => "",
         false => ": --recentre moves the mesh to the origin first",
     };

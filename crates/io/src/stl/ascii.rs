@@ -68,9 +68,14 @@ pub(super) fn read<'a>(
             b""
         };
         let text = line.text.strip_prefix(bom).unwrap_or(line.text);
-        for word in words(text) {
+        let mut rest = words(text);
+        while let Some(word) = rest.next() {
             if parser.read(word, line.number)? {
-                break;
+                let next = after_name(&parser.expect, rest.clone());
+                let Some(next) = next.filter(|_| !is_stl_comment(word)) else {
+                    break;
+                };
+                rest = next;
             }
         }
     }
@@ -244,6 +249,25 @@ impl<'a> Parser<'a> {
         }
         self.facets.flush()?;
         Ok(self.facets)
+    }
+}
+
+/// Returns the words of a line after the name of a solid, if facets follow on the same line, as in files
+/// without line ends; `None` if all words are the name.
+fn after_name<'a, W: Iterator<Item = &'a [u8]> + Clone>(expect: &Expect, mut rest: W) -> Option<W> {
+    let is = |word: &[u8], keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
+    loop {
+        let here = rest.clone();
+        let word = rest.next()?;
+        let is_next = match expect {
+            Expect::FacetOrEnd => {
+                is(word, "facet") && rest.clone().next().is_some_and(|next| is(next, "normal"))
+            }
+            _ => is(word, "solid") && after_name(&Expect::FacetOrEnd, rest.clone()).is_some(),
+        };
+        if is_next {
+            return Some(here);
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::format::Format;
 
 /// Codes of glTF.
 const FLOAT: u32 = 5126;
+const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const POINTS: u32 = 0;
 const TRIANGLES: u32 = 4;
@@ -116,10 +117,27 @@ fn write_data(
             out.write_all(&x.to_le_bytes())?;
         }
     }
-    for v in triangles.faces().corners() {
-        out.write_all(&v.row().to_le_bytes())?;
+    let corners = triangles.faces().corners();
+    if !has_short_indices(triangles.vertex_count()) {
+        return corners
+            .iter()
+            .try_for_each(|v| out.write_all(&v.row().to_le_bytes()));
     }
-    Ok(())
+    for v in corners {
+        // Not more than 65,534.
+        out.write_all(&(v.row() as u16).to_le_bytes())?;
+    }
+    let padding = if corners.len().is_multiple_of(2) {
+        0
+    } else {
+        2
+    };
+    out.write_all(&[0; 2][..padding])
+}
+
+/// Returns whether indices have 16 bits, which is half of the size. The index 65,535 is not allowed there.
+fn has_short_indices(vertices: usize) -> bool {
+    vertices <= 65_535
 }
 
 /// Numbers of elements, and the place of the mesh.
@@ -146,13 +164,23 @@ impl Layout {
     }
 
     fn index_bytes(&self) -> u64 {
-        4 * self.indices as u64
+        let size = if has_short_indices(self.vertices) {
+            2
+        } else {
+            4
+        };
+        size * self.indices as u64
     }
 
-    /// Returns the number of bytes of the data.
-    fn bytes(&self) -> u64 {
+    /// Returns the place of the indices.
+    fn index_offset(&self) -> u64 {
         let lists = if self.has_normals { 2 } else { 1 };
-        lists * self.point_bytes() + self.index_bytes()
+        lists * self.point_bytes()
+    }
+
+    /// Returns the number of bytes of the data, a multiple of four.
+    fn bytes(&self) -> u64 {
+        self.index_offset() + self.index_bytes().next_multiple_of(4)
     }
 
     /// Returns the JSON text.
@@ -179,12 +207,19 @@ impl Layout {
         if self.indices > 0 {
             primitive["mode"] = json!(TRIANGLES);
             primitive["indices"] = json!(accessors.len());
+            let component = match has_short_indices(self.vertices) {
+                true => UNSIGNED_SHORT,
+                false => UNSIGNED_INT,
+            };
             accessors.push(json!({
-                "bufferView": views.len(), "componentType": UNSIGNED_INT, "count": self.indices,
+                "bufferView": views.len(), "componentType": component, "count": self.indices,
                 "type": "SCALAR",
             }));
-            let offset = self.bytes() - self.index_bytes();
-            views.push(view(offset, self.index_bytes(), ELEMENT_ARRAY_BUFFER));
+            views.push(view(
+                self.index_offset(),
+                self.index_bytes(),
+                ELEMENT_ARRAY_BUFFER,
+            ));
         }
         let mut buffer = json!({"byteLength": self.bytes()});
         if format == Format::Gltf {

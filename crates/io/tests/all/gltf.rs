@@ -832,3 +832,29 @@ fn links_out_of_the_folder_are_refused() {
     let mesh = sixfold_io::read(outer.path().join("other/a.gltf"));
     assert_eq!(mesh.expect("below the folder").faces.len(), 2);
 }
+
+/// Indices have 16 bits as long as they can, and never the index 65,535.
+#[test]
+fn written_indices_have_16_bits_if_there_are_few_vertices() {
+    for (vertices, faces, component) in [(3, 1, 5123), (65_535, 2, 5123), (65_536, 3, 5125)] {
+        let points = (0..vertices).map(|i| Point::new(i as f32, (i % 7) as f32, 0.0));
+        let last = vertices - 1;
+        let triangles = (0..faces).map(|i| [i, i + 1, last]);
+        let mesh = PolygonMesh::new(points, triangles).expect("valid");
+        for format in [Format::Glb, Format::Gltf] {
+            let mut bytes = Vec::new();
+            let options = WriteOptions::default();
+            write_to(&mesh, format, &options, &mut bytes).expect("memory");
+            let text = String::from_utf8_lossy(&bytes);
+            let code = format!("\"componentType\":{component}");
+            assert!(text.contains(&code), "{vertices} {format}");
+            assert!(format == Format::Gltf || bytes.len().is_multiple_of(4));
+            let again = read_from("a.glb", bytes.as_slice(), &ReadOptions::default());
+            assert_eq!(
+                again.expect("valid").into_polygons().0,
+                mesh,
+                "{vertices} {format}"
+            );
+        }
+    }
+}

@@ -405,3 +405,32 @@ fn lines_around_the_solids_of_ascii_stl_are_passed_over() {
                    name ends in its format";
     assert_refused("a", "a text\nsolid state\nis not STL\n", message);
 }
+
+/// All of the text on one line, as some programs write it.
+#[test]
+fn text_without_line_ends_is_read() {
+    let facet = |z: u32| {
+        format!(
+            "facet normal 0 0 1 outer loop vertex 0 0 {z} vertex 1 0 {z} vertex 0 1 {z} endloop endfacet "
+        )
+    };
+    let (one, two) = (facet(0), facet(3));
+    for text in [
+        format!("solid {one}{two}endsolid"),
+        format!("solid my facet of a solid {one}{two}endsolid my facet of a solid"),
+        format!("solid a {one}endsolid a solid b {two}endsolid b"),
+        format!("solid a {one}endsolid solid solid {two}endsolid\n"),
+    ] {
+        let mesh = read_from("a.stl", text.as_bytes(), &ReadOptions::default());
+        let mesh = mesh.unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(
+            (mesh.format, mesh.faces.len()),
+            (Format::StlAscii, 2),
+            "{text}"
+        );
+    }
+    // The name of a solid is no facet.
+    let text = format!("solid facet of normal size\n{one}\nendsolid solid facet\n");
+    let mesh = read_from("a.stl", text.as_bytes(), &ReadOptions::default());
+    assert_eq!(mesh.expect("valid").faces.len(), 1);
+}
