@@ -5,7 +5,7 @@ mod limit;
 mod local;
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -23,7 +23,7 @@ use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::{FaceBar, exit_on_interrupt};
 use crate::seams::without_seams;
 use crate::shape_check::check_faces;
-use crate::text::{TextOutput, sanitize};
+use crate::text::{TextOutput, print_notice, sanitize};
 use forecast::Forecast;
 use limit::Limits;
 use sixfold_results::numbers::{counted, duration, figure, grouped};
@@ -80,6 +80,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
+    if subdivision.scheme == Scheme::DooSabin && arguments.levels > 0 {
+        note_isolated(mesh, &polygons);
+    }
     // Sharpness that remains belongs to the result, so that a further level continues. Without any in
     // the mesh, only the rule for the boundary makes some, and makes it again.
     let options = match creases.is_empty() {
@@ -113,6 +116,23 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         &step.polygons,
         &arguments.files.output,
     ))
+}
+
+/// Prints a note if there are vertices without faces: Doo–Sabin makes vertices of the corners of faces.
+fn note_isolated(path: &Path, polygons: &PolygonMesh) {
+    let mut is_used = vec![false; polygons.vertex_count()];
+    for v in polygons.faces().corners() {
+        is_used[v.index()] = true;
+    }
+    let isolated = is_used.iter().filter(|is_used| !**is_used).count();
+    if isolated > 0 {
+        let vertices = counted(
+            isolated,
+            "vertex without faces is",
+            "vertices without faces are",
+        );
+        print_notice(&format!("note: {}: {vertices} left out", shown(path)));
+    }
 }
 
 /// Returns the scheme with its options. Refuses options that the scheme does not have.

@@ -169,6 +169,18 @@ fn survey_tile(east: f64, north: f64) -> String {
     text
 }
 
+/// Moving a mesh does not help where its coordinates are tiny, and is not advised there.
+#[test]
+fn rounding_of_tiny_coordinates_is_reported() {
+    let sixfold = Sixfold::new();
+    sixfold.file("tiny.obj", "v 0 0 0\nv 1e-40 0 0\nv 0 1e-40 0\nf 1 2 3\n");
+    let run = run_ok(&sixfold, &["inspect", "tiny.obj"]);
+    assert!(
+        run.stderr.ends_with("of the size of the mesh)\n"),
+        "{run:?}"
+    );
+}
+
 #[test]
 fn rounding_far_from_the_origin_is_reported() {
     let sixfold = Sixfold::new();

@@ -531,3 +531,19 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
         "would overwrite",
     );
 }
+
+#[test]
+fn doo_sabin_says_which_vertices_it_leaves_out() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", &format!("{TETRAHEDRON}v 5 5 5\nv 6 6 6\n"));
+    for (scheme, note) in [
+        (
+            "doo-sabin",
+            "note: t.obj: 2 vertices without faces are left out\n",
+        ),
+        ("catmull-clark", ""),
+    ] {
+        let arguments = ["subdivide", "--scheme", scheme, "t.obj", "-o", "out.obj"];
+        assert_eq!(run_ok(&sixfold, &arguments).stderr, note);
+    }
+}

@@ -245,7 +245,16 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
             }
         }
         self.text.push(b'\n');
-        if words.next().is_some() {
+        if words.clone().next().is_some() {
+            const STATEMENTS: [&str; 7] = ["v", "vt", "vn", "f", "l", "g", "o"];
+            let mut extra = words.take_while(|word| !word.starts_with('#'));
+            if let Some(statement) = extra.find(|word| STATEMENTS.contains(word)) {
+                let place = Place::Line(self.line);
+                let expected = "a vertex alone on its line";
+                return Err(self
+                    .builder
+                    .unexpected(place, expected, statement.as_bytes()));
+            }
             self.ignore(IgnoredKind::ExtraValues);
         }
         if are_numbers && wide.iter().any(|x| !(*x as f32).is_finite()) {

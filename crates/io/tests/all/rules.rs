@@ -359,3 +359,15 @@ fn an_error_of_the_source_is_reported_with_its_line() {
     let error = parse_obj("disk.obj", BufReader::new(Failing)).expect_err("unplugged");
     assert!(error.to_string().starts_with("disk.obj:1: "), "{error}");
 }
+
+/// A line that has lost its end is named, and not read as values that have no meaning.
+#[test]
+fn several_vertices_on_one_line_are_refused() {
+    let text = "v 1 0 0\nv 0 0 0 v 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let error = sixfold_io::parse_obj("a.obj", text.as_bytes()).expect_err("two statements");
+    let message = "a.obj:2: expected a vertex alone on its line, found \"v\"";
+    assert!(error.to_string().starts_with(message), "{error}");
+    let text = "v 1 0 0 1 0.5 0.5 0.5\nv 0 0 0 # first v\nv 0 1 0\nf 1 2 3\n";
+    let mesh = sixfold_io::parse_obj("a.obj", text.as_bytes());
+    assert_eq!(mesh.expect("values and a comment").faces.len(), 1);
+}
