@@ -1,6 +1,6 @@
 //! Collects vertices and faces of a file, with the checks that all formats share.
 
-use std::io::{self};
+use std::io;
 
 use sixfold_core::{FaceId, FaceList, MAX_ROWS, Point, PolygonCutter, VertexId, row};
 

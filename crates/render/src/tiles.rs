@@ -22,7 +22,7 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    /// Returns tiles that hide nothing, for so many columns and rows of samples.
+    /// Returns the tiles of an empty depth buffer with these columns and rows of samples. They hide nothing.
     pub(crate) fn new(columns: usize, rows: usize) -> Result<Self, RenderError> {
         let count = columns.div_ceil(SIDE) * rows.div_ceil(SIDE);
         Ok(Self {
@@ -81,7 +81,7 @@ impl Tiles {
         farthest > f32::NEG_INFINITY && nearest() < farthest
     }
 
-    /// Says that samples of the tile of a sample were drawn.
+    /// Marks the tile of a sample as drawn, so that the next `update` finds its depth again.
     pub(crate) fn mark_drawn(&mut self, sample: [usize; 2]) {
         let tile = self.tile(sample);
         self.is_old[tile] = true;

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sixfold::glam::DVec3;
-use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, Place, PolygonPlaces};
+use sixfold::io::{FileMesh, IgnoredKind, LeftOut, Narrowing, Notice, Place, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
-use sixfold::{Creases, FaceId, PolygonMesh, VertexId, shapes};
+use sixfold::{Creases, FaceId, PolygonMesh, shapes};
 use sixfold_results::Results;
 use sixfold_study::{StudyMesh, sha256_of};
 
@@ -178,9 +178,10 @@ impl FaceNumbers {
     /// Returns the faces of the mesh that come from a face of the file: none if it was left out, several
     /// if it was cut.
     pub(crate) fn faces(&self, number: usize) -> impl Iterator<Item = FaceId> + use<> {
+        let before = |f: usize| u32::try_from(f).expect("rows have 32 bits");
         let first = self.numbers.partition_point(|&other| other < number);
         let end = self.numbers.partition_point(|&other| other <= number);
-        (0..).map(FaceId::new).take(end).skip(first)
+        (before(first)..before(end)).map(FaceId::new)
     }
 
     /// Returns the numbers for the faces after a change that keeps their order; `old` returns the face before.
@@ -200,27 +201,30 @@ pub(crate) fn with_face_numbers(
     chosen: ReadPolygons,
 ) -> Result<NumberedMesh, Failure> {
     let mesh = for_repair(path, chosen.files)?;
-    let faces = || mesh.polygons.faces().iter();
-    let place = |f| mesh.places.place(f, &mesh.polygons);
-    // Of faces at one place, one was cut into the others.
-    let kept = faces().map(|(f, _)| place(f));
-    let mut places: Vec<Place> = kept.chain(mesh.left_out.iter().copied()).collect();
-    places.sort_unstable();
-    places.dedup();
-    let number = |f| places.partition_point(|&other| other < place(f));
-    // A face is cut into triangles one after the other.
-    let parts = |face: &[VertexId]| {
-        if chosen.triangulate {
+    // Reading cuts faces that name a vertex twice: of faces at one place, one was cut into the others.
+    // Without such a face, those at one place, such as a line, are different ones.
+    let mut ignored = mesh.ignored.iter();
+    let was_cut = ignored.any(|notice| notice.kind == IgnoredKind::CutFaces);
+    let mut left_out = mesh.left_out.iter().peekable();
+    let (mut numbers, mut in_file, mut last) = (Vec::new(), 0, None);
+    for (f, face) in mesh.polygons.faces().iter() {
+        let place = mesh.places.place(f, &mesh.polygons);
+        while left_out.next_if(|&&other| other < place).is_some() {
+            in_file += 1;
+        }
+        if !(was_cut && last == Some(place)) {
+            in_file += 1;
+        }
+        last = Some(place);
+        let parts = if chosen.triangulate {
             face.len() - 2
         } else {
             1
-        }
-    };
-    let numbers = faces().flat_map(|(f, face)| std::iter::repeat_n(number(f), parts(face)));
-    let numbers = FaceNumbers {
-        numbers: numbers.collect(),
-        in_file: places.len(),
-    };
+        };
+        numbers.extend(std::iter::repeat_n(in_file - 1, parts));
+    }
+    let in_file = in_file + left_out.count();
+    let numbers = FaceNumbers { numbers, in_file };
     Ok(NumberedMesh {
         polygons: cut_if_chosen(path, mesh.polygons, &mesh.places, chosen)?,
         creases: mesh.creases,

@@ -5,7 +5,7 @@ mod limit;
 mod local;
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -80,8 +80,11 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
-    if subdivision.scheme == Scheme::DooSabin && arguments.levels > 0 {
-        note_isolated(mesh, &polygons);
+    let isolated = forecast.isolated_vertices;
+    if subdivision.scheme == Scheme::DooSabin && arguments.levels > 0 && isolated > 0 {
+        let are = ["vertex without faces is", "vertices without faces are"];
+        let vertices = counted(isolated, are[0], are[1]);
+        print_notice(&format!("note: {}: {vertices} left out", shown(mesh)));
     }
     // Sharpness that remains belongs to the result, so that a further level continues. Without any in
     // the mesh, only the rule for the boundary makes some, and makes it again.
@@ -116,23 +119,6 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         &step.polygons,
         &arguments.files.output,
     ))
-}
-
-/// Prints a note if there are vertices without faces: Doo–Sabin makes vertices of the corners of faces.
-fn note_isolated(path: &Path, polygons: &PolygonMesh) {
-    let mut is_used = vec![false; polygons.vertex_count()];
-    for v in polygons.faces().corners() {
-        is_used[v.index()] = true;
-    }
-    let isolated = is_used.iter().filter(|is_used| !**is_used).count();
-    if isolated > 0 {
-        let vertices = counted(
-            isolated,
-            "vertex without faces is",
-            "vertices without faces are",
-        );
-        print_notice(&format!("note: {}: {vertices} left out", shown(path)));
-    }
 }
 
 /// Returns the scheme with its options. Refuses options that the scheme does not have.

@@ -147,6 +147,31 @@ fn lists_name_the_elements_of_the_file() {
     assert_refused(&sixfold, &[&arguments[..], &rest].concat(), 2, message);
 }
 
+/// Faces that share a line of the file are different faces.
+#[test]
+fn faces_on_one_line_have_numbers_of_their_own() {
+    let sixfold = Sixfold::new();
+    let facet = |x: u32| {
+        let next = x + 1;
+        format!(
+            "facet normal 0 0 1 outer loop vertex {x} 0 0 vertex {next} 0 0 vertex {x} 1 0 endloop endfacet "
+        )
+    };
+    let facets: Vec<String> = (0..4).map(|i| facet(3 * i)).collect();
+    sixfold.file("line.stl", &format!("solid {}endsolid", facets.concat()));
+    sixfold.file("third.txt", "2\n");
+    let arguments = [
+        "--scheme",
+        "midpoint",
+        "--select",
+        "faces:third.txt",
+        "line.stl",
+    ];
+    let part = subdivided(&sixfold, &arguments);
+    assert_eq!(part.counts(), [12 + 3, 3 + 4]);
+    assert!(part.positions.contains(&[6.5, 0.0, 0.0]));
+}
+
 /// Commands that keep the edges keep their sharpness.
 #[test]
 fn creases_are_kept_where_edges_are() {

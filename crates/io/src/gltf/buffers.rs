@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
-use super::document::{Document, Primitive, Uri};
+use super::document::{Document, Uri};
 use super::{fault, item};
 use crate::error::ReadError;
 use crate::excerpt::shortened;
@@ -156,8 +156,7 @@ impl Files {
 /// Returns for each buffer whether it contains positions or indices.
 fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError> {
     let mut used = vec![false; document.buffers.len()];
-    let primitives = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    for number in primitives.flat_map(Primitive::accessors) {
+    for number in document.accessors() {
         // An accessor that does not exist is reported when its mesh is read.
         let Some(accessor) = document.accessors.get(number) else {
             continue;

@@ -105,12 +105,10 @@ pub(super) struct Primitive {
 }
 
 impl Primitive {
-    /// Returns the accessors of the positions, of the indices, and of the positions of morph targets.
+    /// Returns the accessors of the positions and the indices.
     pub(super) fn accessors(&self) -> impl Iterator<Item = usize> {
-        let position = |data: &BTreeMap<String, usize>| data.get("POSITION").copied();
-        let targets = self.targets.iter().filter_map(position);
-        let base = position(&self.attributes).into_iter();
-        base.chain(self.indices).chain(targets)
+        let position = self.attributes.get("POSITION").copied();
+        position.into_iter().chain(self.indices)
     }
 }
 
@@ -238,6 +236,32 @@ fn shown(message: &str) -> String {
 }
 
 impl Document {
+    /// Returns the accessors that are read if all meshes are: of positions, of indices, and of the morph
+    /// targets of meshes for which there is a weight that is not 0.
+    pub(super) fn accessors(&self) -> Vec<usize> {
+        let applies = |weights: &[f64]| weights.iter().any(|&weight| weight != 0.0);
+        let mut morphs: Vec<bool> = self
+            .meshes
+            .iter()
+            .map(|mesh| applies(&mesh.weights))
+            .collect();
+        for node in &self.nodes {
+            let mesh = node.mesh.and_then(|mesh| morphs.get_mut(mesh));
+            if let (Some(morphs), Some(weights)) = (mesh, &node.weights) {
+                *morphs |= applies(weights);
+            }
+        }
+        let mut accessors = Vec::new();
+        for (mesh, morphs) in self.meshes.iter().zip(morphs) {
+            for primitive in &mesh.primitives {
+                accessors.extend(primitive.accessors());
+                let targets = primitive.targets.iter().filter(|_| morphs);
+                accessors.extend(targets.filter_map(|target| target.get("POSITION")));
+            }
+        }
+        accessors
+    }
+
     /// Parses the JSON text.
     pub(super) fn parse(json: &[u8], builder: &MeshBuilder) -> Result<Self, ReadError> {
         let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);

@@ -106,7 +106,7 @@ fn is_known(name: &str) -> bool {
 
 /// Returns whether a primitive with compressed data has its positions and indices in buffers, too.
 fn has_plain_data(primitive: &Primitive, document: &Document) -> bool {
-    let mut accessors = accessors(primitive);
+    let mut accessors = primitive.accessors();
     primitive.attributes.contains_key("POSITION")
         && accessors.all(|number| {
             // An accessor that does not exist is reported when its mesh is read.
@@ -118,23 +118,16 @@ fn has_plain_data(primitive: &Primitive, document: &Document) -> bool {
 /// Returns whether the positions and indices of a primitive are in buffers, or some of them are:
 /// without a buffer, all numbers are zero.
 fn has_any_data(primitive: &Primitive, document: &Document) -> bool {
-    accessors(primitive).all(|number| {
+    primitive.accessors().all(|number| {
         let accessor = document.accessors.get(number);
         accessor.is_none_or(|accessor| accessor.views().next().is_some())
     })
 }
 
-/// Returns the accessors of the positions and the indices.
-fn accessors(primitive: &Primitive) -> impl Iterator<Item = usize> {
-    let position = primitive.attributes.get("POSITION").copied();
-    position.into_iter().chain(primitive.indices)
-}
-
 /// Returns for each buffer view whether positions or indices are in it.
 fn used_views(document: &Document) -> Vec<bool> {
     let mut used = vec![false; document.buffer_views.len()];
-    let primitives = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    for number in primitives.flat_map(Primitive::accessors) {
+    for number in document.accessors() {
         let Some(accessor) = document.accessors.get(number) else {
             continue;
         };

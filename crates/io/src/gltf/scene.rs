@@ -227,8 +227,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         Ok(())
     }
 
-    /// Counts the data of a primitive that is not kept.
-    /// `morphs` is the number of morph targets that are applied.
+    /// Counts the data of a primitive that is not kept. `morphs` is the number of morph targets that are applied.
     fn note_ignored(&mut self, primitive: &Primitive, morphs: usize, number: usize) {
         let place = Place::Item {
             kind: "mesh",

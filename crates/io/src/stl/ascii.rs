@@ -259,14 +259,17 @@ fn after_name<'a, W: Iterator<Item = &'a [u8]> + Clone>(expect: &Expect, mut res
     loop {
         let here = rest.clone();
         let word = rest.next()?;
-        let is_next = match expect {
+        match expect {
             Expect::FacetOrEnd => {
-                is(word, "facet") && rest.clone().next().is_some_and(|next| is(next, "normal"))
+                if is(word, "facet") && rest.clone().next().is_some_and(|next| is(next, "normal")) {
+                    return Some(here);
+                }
             }
-            _ => is(word, "solid") && after_name(&Expect::FacetOrEnd, rest.clone()).is_some(),
-        };
-        if is_next {
-            return Some(here);
+            // Without a facet after this word, there is none after the others.
+            _ if is(word, "solid") => {
+                return after_name(&Expect::FacetOrEnd, rest).map(|_| here);
+            }
+            _ => {}
         }
     }
 }

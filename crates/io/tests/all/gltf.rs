@@ -223,6 +223,32 @@ fn morph_targets_are_applied_with_the_default_weights() {
     ));
 }
 
+/// The data of morph targets is needed only where a weight is not 0.
+#[test]
+fn data_of_targets_without_weight_is_not_read() {
+    let mut parts = Parts::square();
+    parts.document["buffers"] = json!([{}, {"uri": "missing.bin", "byteLength": 48}]);
+    let view = json!({"buffer": 1, "byteLength": 48});
+    parts.document["bufferViews"]
+        .as_array_mut()
+        .expect("a list")
+        .push(view);
+    let accessor = json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC3"});
+    parts.document["accessors"]
+        .as_array_mut()
+        .expect("a list")
+        .push(accessor);
+    parts.document["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 2}]);
+    assert_eq!(parts.read().faces.len(), 2);
+    parts.document["nodes"] = json!([{"mesh": 0, "weights": [0.0]}]);
+    assert_eq!(parts.read().faces.len(), 2);
+    parts.document["nodes"] = json!([{"mesh": 0, "weights": [0.5]}]);
+    let bytes = parts.glb();
+    let error = read_from("a.glb", bytes.as_slice(), &ReadOptions::default());
+    let error = error.expect_err("the data is missing").to_string();
+    assert!(error.contains("missing.bin"), "{error}");
+}
+
 #[test]
 fn what_a_scene_or_a_node_leaves_out_is_named() {
     let mut parts = Parts::square();

@@ -3,7 +3,7 @@
 mod faults;
 mod refusals;
 
-use sixfold_core::{Creases, Point, PolygonMesh};
+use sixfold_core::{Creases, Point, PolygonMesh, RowId};
 use sixfold_render::{Picture, RenderMesh, Settings, Shading, Size, Up, View, draw, draw_svg};
 
 /// The faces of a cube from −1 to 1; bits 1, 2 and 4 of a vertex number are its x, y and z.
@@ -444,4 +444,58 @@ fn extreme_meshes_can_be_drawn() {
     assert_eq!(count(&picture, PixelContent::Crease), 0);
     let svg = svg(&mesh, &creases, &settings());
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+}
+
+/// Large faces are drawn from the front to the back, without what is hidden. The picture is that of all
+/// faces, in whatever order they are stored.
+#[test]
+fn what_is_hidden_and_the_order_of_faces_change_nothing() {
+    let sizes = [1.0, 0.9, 0.3, 0.99, 0.6];
+    let mut points = Vec::new();
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for half in sizes {
+        let cube = cube(half);
+        let first = points.len() as u32;
+        points.extend(cube.positions().iter().copied());
+        let of_cube = cube.faces().iter();
+        faces.extend(of_cube.map(|(_, face)| face.iter().map(|v| first + v.row()).collect()));
+    }
+    let draw = |faces: &[Vec<u32>]| {
+        let mesh = PolygonMesh::new(points.iter().copied(), faces).expect("valid");
+        draw_mesh(&mesh, &Creases::default(), &settings())
+    };
+    let nested = draw(&faces);
+    assert_eq!(nested, draw(&faces[..6]), "the outer cube hides the others");
+    faces.reverse();
+    assert_eq!(draw(&faces), nested);
+    // Through a missing face of the outer cube, the others are seen, again in any order.
+    let seen = (0..6).filter(|f| {
+        let mut open = faces.clone();
+        open.remove(faces.len() - 1 - f);
+        let picture = draw(&open);
+        open.rotate_left(7);
+        assert_eq!(draw(&open), picture);
+        picture != nested
+    });
+    assert_eq!(seen.count(), 3);
+}
+
+/// Of two large faces at one place, the first one is seen: outside or inside.
+#[test]
+fn of_faces_at_one_place_the_first_one_is_seen() {
+    let points = [
+        [-1.0, -1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+    ];
+    let draw = |faces: &[[u32; 4]]| {
+        let mesh = PolygonMesh::new(points, faces.iter().copied()).expect("valid");
+        draw_mesh(&mesh, &Creases::default(), &settings())
+    };
+    let (front, back) = ([0, 1, 2, 3], [3, 2, 1, 0]);
+    let [one, other] = [draw(&[front]), draw(&[back])];
+    assert_ne!(one, other);
+    assert_eq!(draw(&[front, back]), one);
+    assert_eq!(draw(&[back, front]), other);
 }

@@ -21,6 +21,8 @@ pub(crate) struct Forecast {
     /// Counts of the control mesh and of each level.
     levels: Vec<Counts>,
     peak: usize,
+    /// Vertices of the control mesh without faces.
+    pub(crate) isolated_vertices: usize,
 }
 
 impl Forecast {
@@ -33,6 +35,7 @@ impl Forecast {
         limit: bool,
     ) -> Result<Self, Failure> {
         let mut extent = Extent::from_polygons(polygons);
+        let isolated_vertices = extent.isolated_vertices;
         let mut counts = vec![extent.counts];
         for level in 0..levels {
             extent = subdivision.refined_extent(&extent, level);
@@ -87,6 +90,7 @@ impl Forecast {
             false => 0,
         };
         Ok(Self {
+            isolated_vertices,
             peak: steps.max(limits),
             levels: counts,
         })
