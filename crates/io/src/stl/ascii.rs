@@ -259,17 +259,14 @@ fn after_name<'a, W: Iterator<Item = &'a [u8]> + Clone>(expect: &Expect, mut res
     loop {
         let here = rest.clone();
         let word = rest.next()?;
-        match expect {
-            Expect::FacetOrEnd => {
-                if is(word, "facet") && rest.clone().next().is_some_and(|next| is(next, "normal")) {
-                    return Some(here);
-                }
-            }
+        let is_in_solid = matches!(expect, Expect::FacetOrEnd);
+        if !is_in_solid && is(word, "solid") {
             // Without a facet after this word, there is none after the others.
-            _ if is(word, "solid") => {
-                return after_name(&Expect::FacetOrEnd, rest).map(|_| here);
-            }
-            _ => {}
+            return after_name(&Expect::FacetOrEnd, rest).map(|_| here);
+        }
+        let mut next = rest.clone();
+        if is_in_solid && is(word, "facet") && next.next().is_some_and(|next| is(next, "normal")) {
+            return Some(here);
         }
     }
 }
