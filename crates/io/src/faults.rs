@@ -25,6 +25,9 @@ pub enum GltfFault {
         number: usize,
         count: usize,
     },
+    /// The scene that was chosen, or the default scene of the file, does not exist.
+    #[error("no such scene: the file has {count}, and the first is scene 0")]
+    NoScene { count: usize },
     /// The mode of a primitive does not exist.
     #[error(
         "a primitive has mode {mode}, but modes are numbers from 0 to 6: export the file again"

@@ -41,7 +41,7 @@ pub(crate) fn read(
     let folder = path.map(|path| path.parent().unwrap_or(Path::new("")));
     let buffers = Buffers::load(name, &mut document, binary, folder)?;
     let mut reader = SceneReader::new(&document, &buffers, &mut builder, bytes);
-    reader.read()?;
+    reader.read(options.scene)?;
     builder.finish()
 }
 

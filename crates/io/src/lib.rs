@@ -13,7 +13,7 @@
 //! | STL | text and binary; several solids; normals that are not numbers; lines before and after solids, comments, `end loop`, a missing `endsolid`; facets beyond the count of a binary header; equal corners become one vertex ([`Welding`]) | facets without exactly three vertices, a count of facets larger than the file |
 //! | PLY | text and both byte orders; every type of numbers and lists, also `int64` and `uint64`; unknown lines of the header; properties and elements in any order; `vertex_index`, `vertex_indices`; triangle strips | other types of numbers, as `long` |
 //! | OFF | prefixes `ST`, `C`, `N`, `4`, `n` in any order; upper and lower case; comments and blank lines anywhere; counts beside or below the keyword, also `OFF3 1 0`; faces on several lines; trailing colours | binary OFF, other than three dimensions |
-//! | glTF | JSON and binary; triangles, strips, fans; the default scene with its transforms, and morph targets with their default weights; 8, 16 and 32-bit indices; sparse, quantised and embedded data; buffers in files below the folder of the file; the mesh of a skin as it is stored, without its joints | Draco and meshopt without plain data; other required extensions that change a mesh, as instances |
+//! | glTF | JSON and binary; triangles, strips, fans; the default scene, or that of [`Scene`], with its transforms, and morph targets with their default weights; 8, 16 and 32-bit indices; sparse, quantised and embedded data; buffers in files below the folder of the file; the mesh of a skin as it is stored, without its joints | Draco and meshopt without plain data; other required extensions that change a mesh, as instances |
 //! | OBJ | see below | |
 //!
 //! glTF needs the feature `gltf`, which is on by default. The others need neither `serde` nor JSON.
@@ -166,7 +166,7 @@ pub use format::Format;
 pub use narrowing::Narrowing;
 pub use notice::{IgnoredKind, Notice};
 pub use obj::parse_obj;
-pub use options::{ReadOptions, Welding};
+pub use options::{ReadOptions, Scene, Welding};
 pub use place::{Location, Place, PolygonPlaces};
 pub use read::{read, read_from, read_with};
 pub use tags::{CornerTag, CreaseTag, Tag, UnusedCrease};

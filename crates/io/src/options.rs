@@ -17,6 +17,19 @@ pub enum Welding {
     Nothing,
 }
 
+/// Which scene of a glTF file is read; other formats have none, and are read as they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Scene {
+    /// The default scene of the file, or else its first one.
+    #[default]
+    Default,
+    /// The scene with this number; the first one has number 0.
+    Number(usize),
+    /// Every node at its place, in one scene or not, and at the origin every mesh that no node names.
+    All,
+}
+
 /// Options of reading; the default suits most programs.
 ///
 /// # Examples
@@ -39,6 +52,7 @@ pub struct ReadOptions {
     pub(crate) format: Option<Format>,
     pub(crate) welding: Welding,
     pub(crate) origin: Origin,
+    pub(crate) scene: Scene,
 }
 
 impl ReadOptions {
@@ -83,5 +97,11 @@ impl ReadOptions {
     pub fn with_origin(self, origin: [f64; 3]) -> Self {
         let origin = Origin::At(origin);
         Self { origin, ..self }
+    }
+
+    /// Sets which scene of a glTF file is read.
+    #[must_use]
+    pub fn with_scene(self, scene: Scene) -> Self {
+        Self { scene, ..self }
     }
 }

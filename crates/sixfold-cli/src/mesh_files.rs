@@ -4,7 +4,8 @@ use std::io;
 use std::path::Path;
 
 use sixfold::io::{
-    FileMesh, Format, Loss, ReadOptions, Welding, WriteOptions, read_from, read_with, write_to,
+    FileMesh, Format, IgnoredKind, Loss, ReadOptions, Scene, Welding, WriteOptions, read_from,
+    read_with, write_to,
 };
 use sixfold::{FaceId, Point, PolygonMesh};
 
@@ -43,12 +44,19 @@ pub(crate) fn read_mesh_at(
             None => settings.recentred(),
         };
     }
+    settings = settings.with_scene(chosen.scene.unwrap_or_default());
     let name = shown(path);
     let mesh = match is_stdout(path) {
         true => read_from(&name, io::stdin().lock(), &settings),
         false => read_with(path, &settings),
     };
     let mesh = mesh.map_err(Failure::usage)?;
+    let is_gltf = matches!(mesh.format, Format::Gltf | Format::Glb);
+    if let (Some(Scene::Number(number)), false) = (chosen.scene, is_gltf) {
+        return Err(Failure::usage(format!(
+            "{name}: there is no scene {number}: only glTF has scenes; leave out --scene"
+        )));
+    }
     for note in notes(&mesh, chosen) {
         print_notice(&format!("note: {name}: {note}"));
     }
@@ -68,7 +76,13 @@ pub(crate) fn shown(path: &Path) -> String {
 
 /// Describes what was ignored or changed.
 fn notes(mesh: &FileMesh, chosen: ReadFiles) -> Vec<String> {
-    let mut notes: Vec<String> = mesh.notices.iter().map(ToString::to_string).collect();
+    let notices = mesh.notices.iter().map(|notice| match notice.kind {
+        IgnoredKind::UnusedMeshes | IgnoredKind::UnusedNodes => {
+            format!("{notice}: --scene all reads them")
+        }
+        _ => notice.to_string(),
+    });
+    let mut notes: Vec<String> = notices.collect();
     if mesh.welded_vertices > 0 {
         let corners = mesh.welded_vertices + mesh.positions.len();
         let corners = counted(corners, "corner", "corners");

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::json_csv::parsed;
-use crate::run::{Run, Sixfold};
+use crate::run::{Run, Sixfold, TETRAHEDRON};
 
 /// An L of area 5.
 const L: &str = "v 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nv 0 0 0\nf 1 2 3 4 5 6\n";
@@ -338,6 +338,53 @@ fn seams_stay_closed() {
     let run = sixfold.run(&["dual", "seams.glb", "--as-stored", "-o", "out.obj"]);
     assert_eq!(run.code, Some(3), "{run:?}");
     assert!(run.stderr.contains("sixfold repair --weld"), "{run:?}");
+}
+
+#[test]
+fn scenes_of_gltf_are_chosen() {
+    let sixfold = Sixfold::new();
+    let triangle = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let document = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0,
+        "scenes": [{{"nodes": [0]}}, {{"nodes": [1, 2]}}],
+        "nodes": [{{"mesh": 0}}, {{"mesh": 0}}, {{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+        "buffers": [{{"byteLength": 36, "uri": "data:;base64,{triangle}"}}]}}"#
+    );
+    sixfold.file("scenes.gltf", &document);
+    let faces = |options: &[&str]| {
+        let run = sixfold.passes(&[&["inspect", "scenes.gltf", "--json", "-"], options].concat());
+        (parsed(&run.stdout)["mesh"]["faces"].clone(), run.stderr)
+    };
+    let (count, notes) = faces(&[]);
+    assert_eq!(count, 1);
+    assert!(
+        notes.contains("2 nodes with meshes outside the scene"),
+        "{notes}"
+    );
+    assert!(notes.contains("--scene all reads them"), "{notes}");
+    assert_eq!(faces(&["--scene", "1"]).0, 2);
+    let (count, notes) = faces(&["--scene", "all"]);
+    assert_eq!(count, 3);
+    assert!(!notes.contains("scene"), "{notes}");
+    sixfold.file("a.obj", TETRAHEDRON);
+    for (mesh, scene, message) in [
+        ("scenes.gltf", "2", "scene 2: no such scene: the file has 2"),
+        ("scenes.gltf", "-1", "from 0, or all"),
+        (
+            "a.obj",
+            "0",
+            "a.obj: there is no scene 0: only glTF has scenes",
+        ),
+    ] {
+        let scene = format!("--scene={scene}");
+        let run = sixfold.run(&["inspect", mesh, &scene]);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.contains(message), "{run:?}");
+    }
+    sixfold.passes(&["inspect", "a.obj", "--scene", "all"]);
 }
 
 /// Two closed boxes side by side whose edges along z have vertices at the same positions.

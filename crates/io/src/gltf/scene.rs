@@ -15,6 +15,7 @@ use crate::error::ReadError;
 use crate::faults::GltfFault;
 use crate::notice::IgnoredKind;
 use crate::number::Coordinate;
+use crate::options::Scene;
 use crate::place::Place;
 
 /// How many times larger than the file a scene may be that repeats its meshes, in vertices, corners
@@ -36,6 +37,8 @@ pub(super) struct SceneReader<'a, 'b> {
     /// Number of vertices, corners and primitives that may be added.
     limit: u64,
     left: u64,
+    /// Number of the scene, for messages.
+    scene: usize,
     /// The meshes that the scene uses.
     used: Vec<bool>,
 }
@@ -56,33 +59,42 @@ impl<'a, 'b> SceneReader<'a, 'b> {
             builder,
             limit,
             left: limit,
+            scene: 0,
             used: vec![false; document.meshes.len()],
         }
     }
 
-    /// Reads the scene, or all meshes if there is no scene.
-    pub(super) fn read(&mut self) -> Result<(), ReadError> {
+    /// Reads a scene, or all meshes if the file has neither scenes nor nodes.
+    pub(super) fn read(&mut self, scene: Scene) -> Result<(), ReadError> {
         let document = self.document;
-        if document.scenes.is_empty() && document.nodes.is_empty() {
-            for mesh in 0..document.meshes.len() {
-                self.read_mesh(mesh, DMat4::IDENTITY, None, ("mesh", mesh))?;
-            }
-            return Ok(());
-        }
-        let roots = match (document.scene, document.scenes.first()) {
-            (None, None) => self.nodes_without_parent(),
-            (None, Some(scene)) => scene.nodes.clone(),
-            (Some(number), _) => {
-                let by = ("scene", number);
-                item(&document.scenes, "scene", number, by, self.buffers.name)?
-                    .nodes
-                    .clone()
+        let scenes = &document.scenes;
+        let chosen = match scene {
+            Scene::Number(number) => Some(number),
+            Scene::Default => document.scene.or((!scenes.is_empty()).then_some(0)),
+            Scene::All => None,
+        };
+        self.scene = chosen.unwrap_or(0);
+        let roots = match chosen {
+            None => self.nodes_without_parent(),
+            Some(number) => {
+                let chosen = scenes.get(number).ok_or_else(|| {
+                    let count = scenes.len();
+                    let missing = GltfFault::NoScene { count };
+                    fault(self.buffers.name, "scene", number, missing)
+                });
+                chosen?.nodes.clone()
             }
         };
         self.read_nodes(roots)?;
-        let unused = self.used.iter().filter(|used| !**used).count();
-        if let Some(number) = self.used.iter().position(|used| !used) {
-            self.note("mesh", number, IgnoredKind::UnusedMeshes, unused);
+        let unused = (0..document.meshes.len()).filter(|&mesh| !self.used[mesh]);
+        let unused: Vec<usize> = unused.collect();
+        let has_no_scene = scenes.is_empty() && document.nodes.is_empty();
+        if scene == Scene::All || has_no_scene {
+            for mesh in unused {
+                self.read_mesh(mesh, DMat4::IDENTITY, None, ("mesh", mesh))?;
+            }
+        } else if let Some(&first) = unused.first() {
+            self.note("mesh", first, IgnoredKind::UnusedMeshes, unused.len());
         }
         Ok(())
     }
@@ -110,7 +122,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         let name = self.buffers.name;
         let mut visited = vec![false; nodes.len()];
         let mut stack: Vec<(usize, DMat4, (&str, usize))> = Vec::new();
-        let scene = ("scene", self.document.scene.unwrap_or(0));
+        let scene = ("scene", self.scene);
         stack.extend(
             roots
                 .into_iter()
@@ -273,7 +285,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         self.left = self.left.checked_sub(count).ok_or_else(|| {
             let at = self.builder.at(Place::Item {
                 kind: "scene",
-                number: self.document.scene.unwrap_or(0),
+                number: self.scene,
             });
             let fault = GltfFault::TooLarge { limit };
             ReadError::Gltf { at, fault }

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh};
 use sixfold_io::{
-    FileMesh, Format, GltfFault, ReadError, ReadOptions, WriteOptions, read_from, write_to,
+    FileMesh, Format, GltfFault, ReadError, ReadOptions, Scene, WriteOptions, read_from, write_to,
 };
 
 /// A document in parts, so that tests can change one of them.
@@ -273,6 +273,49 @@ fn what_a_scene_or_a_node_leaves_out_is_named() {
             "ignored 1 mesh outside the scene (mesh 2)",
         ]
     );
+}
+
+#[test]
+fn scenes_are_chosen() {
+    let mut parts = Parts::square();
+    let meshes = parts.document["meshes"].as_array_mut().expect("a list");
+    meshes.push(meshes[0].clone());
+    parts.document["nodes"] = json!([
+        {"mesh": 0, "translation": [1, 0, 0], "children": [1]},
+        {"mesh": 0, "translation": [10, 0, 0]},
+        {"mesh": 0, "translation": [100, 0, 0]},
+        {"mesh": 0, "translation": [1000, 0, 0]},
+    ]);
+    // The scenes share node 0, and no scene has node 3.
+    parts.document["scenes"] = json!([{"nodes": [0]}, {"nodes": [2, 0]}]);
+    parts.document["scene"] = json!(1);
+    let bytes = parts.glb();
+    let read = |scene| {
+        let options = ReadOptions::default().with_scene(scene);
+        read_from("a.glb", bytes.as_slice(), &options)
+    };
+    let places = |scene| {
+        let mesh = read(scene).unwrap_or_else(|error| panic!("{error}"));
+        let corners = mesh.positions.chunks(4);
+        (corners.map(|c| c[0].x).collect::<Vec<_>>(), notices(&mesh))
+    };
+    let mesh = "ignored 1 mesh outside the scene (mesh 1)".to_owned();
+    let node_3 = "ignored 1 node with a mesh outside the scene (node 3)".to_owned();
+    let nodes = "ignored 2 nodes with meshes outside the scene (first at node 2)".to_owned();
+    assert_eq!(
+        places(Scene::Default),
+        (vec![100.0, 1.0, 11.0], vec![node_3, mesh.clone()])
+    );
+    assert_eq!(places(Scene::Number(1)), places(Scene::Default));
+    assert_eq!(
+        places(Scene::Number(0)),
+        (vec![1.0, 11.0], vec![nodes, mesh])
+    );
+    let all = vec![1.0, 11.0, 100.0, 1000.0, 0.0];
+    assert_eq!(places(Scene::All), (all, vec![]));
+    let error = read(Scene::Number(2)).expect_err("two scenes").to_string();
+    let expected = "a.glb: scene 2: no such scene: the file has 2, and the first is scene 0";
+    assert_eq!(error, expected);
 }
 
 #[test]

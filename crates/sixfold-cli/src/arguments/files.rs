@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold::io::Format;
+use sixfold::io::{Format, Scene};
 
 // The comments of these structs are not doc comments, because clap would print them as the help of
 // each command.
@@ -18,6 +18,19 @@ pub(crate) struct ReadFiles {
     /// Move meshes to the origin before coordinates are rounded to 32 bits, and written meshes back
     #[arg(long)]
     pub(crate) recentre: bool,
+    /// Scene of glTF files to read: its number, or all for every node and mesh
+    /// [default: the default scene of the file]
+    #[arg(long, value_name = "N|all", value_parser = scene, verbatim_doc_comment)]
+    pub(crate) scene: Option<Scene>,
+}
+
+/// Parses `--scene`.
+fn scene(text: &str) -> Result<Scene, String> {
+    match (text, text.parse()) {
+        ("all", _) => Ok(Scene::All),
+        (_, Ok(number)) => Ok(Scene::Number(number)),
+        _ => Err("expected the number of a scene, from 0, or all".to_owned()),
+    }
 }
 
 // How meshes are read by commands that can cut polygons first.
