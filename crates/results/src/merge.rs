@@ -73,10 +73,17 @@ impl Results {
         self.plan(other.planned);
         self.extend(new);
         self.add_failures(other.failures);
-        let is_new = |notice: &String| !self.notices.contains(notice);
-        let new: Vec<String> = other.notices.into_iter().filter(is_new).collect();
-        self.notices.extend(new);
+        self.add_notices(other.notices);
         Ok(())
+    }
+
+    /// Adds the notices that `self` does not have.
+    pub fn add_notices(&mut self, notices: Vec<String>) {
+        for notice in notices {
+            if !self.notices.contains(&notice) {
+                self.notices.push(notice);
+            }
+        }
     }
 
     /// Returns an error if the studies of `other` used another heap policy or cache state. With

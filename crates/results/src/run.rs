@@ -61,6 +61,9 @@ pub struct RunSettings {
     pub triangulate: bool,
     /// True if files with degenerate faces were refused.
     pub strict: bool,
+    /// The options with which a study read mesh files, such as `--as-stored`; empty for the default.
+    #[serde(default)]
+    pub reading: Vec<String>,
 }
 
 impl Run {
@@ -113,7 +116,7 @@ impl RunSettings {
             (Some(_), Some(_)) => "--rounds",
             _ => "--budget",
         };
-        let options = |settings: &Self| -> [(&'static str, String); 9] {
+        let options = |settings: &Self| -> [(&'static str, String); 10] {
             [
                 ("--backends", settings.backends.join(",")),
                 ("--external", settings.externals.join(",")),
@@ -124,6 +127,7 @@ impl RunSettings {
                 ("--caches", settings.caches.name().into()),
                 ("--triangulate", settings.triangulate.to_string()),
                 ("--strict", settings.strict.to_string()),
+                ("reading of mesh files", settings.reading.join(" ")),
             ]
         };
         for ((what, ours), (_, theirs)) in options(self).into_iter().zip(options(other)) {

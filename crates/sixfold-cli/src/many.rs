@@ -26,7 +26,7 @@ use crate::mesh_picture::with_picture;
 use crate::paper;
 use crate::progress::Bar;
 use crate::study::finding;
-use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
+use crate::text::{TextOutput, hanging_indent, print_notice, sanitize, take_notices};
 use sixfold_results::numbers::counted;
 
 pub(crate) use draw::run as draw;
@@ -71,6 +71,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     let selected = unfinished(&meshes, arguments.shard, &results);
     warn_of_debug_build();
+    results.add_notices(take_notices());
     let loaded = match &meshes[..] {
         [mesh @ Mesh { problem: None, .. }] => Some(load_mesh(mesh, arguments)),
         _ => None,
@@ -172,12 +173,15 @@ impl FolderRun<'_> {
             let Some(result) = self.measure_mesh(mesh, &position) else {
                 break; // interrupted before the first result of this mesh
             };
+            let notices = take_notices();
+            results.add_notices(notices.clone());
             if !self.single {
                 text.print_line(&progress_line(&position, mesh, &result));
             }
             match result {
                 Ok(report) => {
-                    let study = Results::from(finding(report, self.arguments));
+                    let mut study = Results::from(finding(report, self.arguments));
+                    study.notices = notices;
                     // An interrupted study is not saved, so that `--resume` measures the mesh
                     // again. Save between two studies, so that writing does not disturb the
                     // measurements.

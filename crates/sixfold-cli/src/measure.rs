@@ -83,7 +83,7 @@ impl Session {
     /// Prints the remaining text, adds the notices to the results, and writes the files. If one file
     /// cannot be written, writes the others anyway, and returns the first error.
     pub(crate) fn write(self, results: &mut Results) -> Result<(), Failure> {
-        results.notices.extend(take_notices());
+        results.add_notices(take_notices());
         let OpenFiles {
             json,
             csv,

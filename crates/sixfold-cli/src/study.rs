@@ -86,7 +86,9 @@ fn run_single(
 /// Completes a study by the arguments that only the command knows.
 pub(crate) fn finding(report: Report, arguments: &Study) -> Finding {
     let mut finding = with_command(report, arguments.triangulate);
-    finding.run_mut().settings.strict = arguments.strict;
+    let settings = &mut finding.run_mut().settings;
+    settings.strict = arguments.strict;
+    settings.reading = arguments.read.given();
     finding
 }
 

@@ -200,6 +200,34 @@ fn finished_studies_are_not_repeated() {
 }
 
 #[test]
+fn notices_of_finished_studies_stay() {
+    let sixfold = scans();
+    sixfold.file("scans/textured.obj", &format!("vt 0 0\n{TETRAHEDRON}"));
+    let ignored = "note: scans/textured.obj: ignored 1 texture coordinate (line 1)";
+    for _ in 0..2 {
+        let run = study(&sixfold, &["--report", "out", "--resume"]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let found = results(&sixfold, "out")["notices"].clone();
+        let lines = found.as_array().expect("a list");
+        assert_eq!(
+            lines.iter().filter(|line| **line == ignored).count(),
+            1,
+            "{found}"
+        );
+    }
+    // Another reading of the files makes other meshes.
+    let other = [
+        "study",
+        "scans",
+        "--report",
+        "out",
+        "--resume",
+        "--recentre",
+    ];
+    assert_refused(&sixfold, &other, 2, "other settings");
+}
+
+#[test]
 fn merged_shards_equal_a_single_run() {
     let sixfold = scans();
     for shard in ["1/2", "2/2"] {

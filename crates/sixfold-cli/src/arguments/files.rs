@@ -24,6 +24,20 @@ pub(crate) struct ReadFiles {
     pub(crate) scene: Option<Scene>,
 }
 
+impl ReadFiles {
+    /// Returns the options that were given, as they are written on the command line.
+    pub(crate) fn given(self) -> Vec<String> {
+        let scene = match self.scene {
+            Some(Scene::Number(number)) => Some(format!("--scene {number}")),
+            Some(Scene::All) => Some("--scene all".to_owned()),
+            _ => None,
+        };
+        let as_stored = self.as_stored.then(|| "--as-stored".to_owned());
+        let recentre = self.recentre.then(|| "--recentre".to_owned());
+        [as_stored, recentre, scene].into_iter().flatten().collect()
+    }
+}
+
 /// Parses `--scene`.
 fn scene(text: &str) -> Result<Scene, String> {
     match (text, text.parse()) {

@@ -66,6 +66,7 @@ impl Folder {
         let wanted = RunSettings {
             triangulate: arguments.triangulate,
             strict: arguments.strict,
+            reading: arguments.read.given(),
             ..settings.run_settings()
         };
         for (file, text) in files {
@@ -77,7 +78,9 @@ impl Folder {
                 continue;
             };
             for study in saved.findings {
-                add_saved(study, &file, &wanted, meshes, results)?;
+                if add_saved(study, &file, &wanted, meshes, results)? {
+                    results.add_notices(saved.notices.clone());
+                }
             }
         }
         Ok(folder)
@@ -206,9 +209,9 @@ fn add_saved(
     wanted: &RunSettings,
     meshes: &[Mesh],
     results: &mut Results,
-) -> Result<(), Failure> {
+) -> Result<bool, Failure> {
     let Finding::Study(study) = saved else {
-        return Ok(());
+        return Ok(false);
     };
     if study.run.settings != *wanted {
         return Err(Failure::usage(format!(
@@ -217,14 +220,15 @@ fn add_saved(
         )));
     }
     let Some(mesh) = meshes.iter().find(|mesh| mesh.name == study.mesh.name) else {
-        return Ok(()); // no longer selected
+        return Ok(false); // no longer selected
     };
-    match mesh.path.as_deref().and_then(file_hash) == study.mesh.file_sha256 {
+    let is_same = mesh.path.as_deref().and_then(file_hash) == study.mesh.file_sha256;
+    match is_same {
         true => results.add(Finding::Study(study)),
         false => print_notice(&format!(
             "note: {}: the file has changed since it was studied, so it is studied again",
             mesh.name
         )),
     }
-    Ok(())
+    Ok(is_same)
 }

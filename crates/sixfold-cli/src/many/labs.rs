@@ -11,7 +11,7 @@ use super::folder::Folder;
 use crate::failure::Failure;
 use crate::measure::with_command;
 use crate::progress::Bar;
-use crate::text::{TextOutput, print_notice, sanitize};
+use crate::text::{TextOutput, print_notice, sanitize, take_notices};
 use crate::{growth, orders, why};
 
 sixfold_core::named! {
@@ -82,6 +82,7 @@ impl LabRunner<'_> {
                 false => None,
             };
             if let Some(saved) = saved {
+                results.add_notices(saved.notices);
                 saved
                     .findings
                     .into_iter()
@@ -93,10 +94,12 @@ impl LabRunner<'_> {
             }
             match self.measure(lab, &format!("{} of {}: ", i + 2, selected.len() + 1)) {
                 Ok(Some(finding)) => {
-                    let document = Results::from(with_command(finding, self.triangulate));
+                    let mut document = Results::from(with_command(finding, self.triangulate));
+                    document.notices = take_notices();
                     if !self.stop.load(Ordering::Relaxed) {
                         written = written.and(self.folder.save_lab(lab.name(), &document));
                     }
+                    results.add_notices(document.notices);
                     document
                         .findings
                         .into_iter()

@@ -166,8 +166,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Returns the settings that results have. A study does not know `triangulate` and `strict`, so both
-    /// are false.
+    /// Returns the settings that results have. A study does not know how its mesh was read, so
+    /// `triangulate` and `strict` are false, and `reading` is empty.
     pub fn run_settings(&self) -> RunSettings {
         let externals = self.externals.iter().map(|other| other.name.clone());
         let operations = self
