@@ -8,7 +8,7 @@ use sixfold::io::WriteOptions;
 use sixfold::remeshing::{Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, Target};
 use sixfold::repair::measures;
 use sixfold::spatial::{DistanceError, Sampling, mesh_distance};
-use sixfold::{Creases, Edit, PolygonMesh, QueryCost, StructureInfo, structure_infos};
+use sixfold::{Creases, Edit, Facts, PolygonMesh, QueryCost, StructureInfo, structure_infos};
 
 use crate::arguments::{Decimate, MeshInOut, ReadPolygons, Remesh, ShapeCheck};
 use crate::failure::Failure;
@@ -33,7 +33,8 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
         Some(limit) => within(limit, before, &arguments.backend, decimation),
         None => edited_by(&arguments.backend, before, &decimation),
     };
-    edit_file(&arguments.files, arguments.read, arguments.check, edit)
+    let (backend, files) = (&arguments.backend, &arguments.files);
+    edit_file(backend, files, arguments.read, arguments.check, edit)
 }
 
 /// The largest number of decimations until the measured distance is small enough.
@@ -85,11 +86,13 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
         })
     };
     let edit = |before: &PolygonMesh| edited_by(&arguments.backend, before, &remeshing(before)?);
-    edit_file(&arguments.files, arguments.read, arguments.check, edit)
+    let (backend, files) = (&arguments.backend, &arguments.files);
+    edit_file(backend, files, arguments.read, arguments.check, edit)
 }
 
-/// Edits a mesh with `edit`.
+/// Edits a mesh with `edit`, which uses `backend`.
 fn edit_file(
+    backend: &str,
     files: &MeshInOut,
     read: ReadPolygons,
     check: ShapeCheck,
@@ -105,6 +108,9 @@ fn edit_file(
     if let Some(shortfall) = shortfall {
         print_notice(&format!("note: {}: {shortfall}", to.display()));
     }
+    if let Some(note) = non_manifold_note(backend, [&before, &polygons]) {
+        print_notice(&format!("note: {}: {note}", to.display()));
+    }
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());
     let vertices = counted(polygons.vertex_count(), "vertex", "vertices");
@@ -112,6 +118,32 @@ fn edit_file(
     text.print_list("", [format!("{place}: {vertices}, {faces}; {edits}")]);
     text.finish()?;
     Ok(check_shape(&before, &polygons, to, check))
+}
+
+/// Returns what became of the edges and vertices that are not manifold, if the mesh has such. `backend`
+/// holds the meshes before and after the edits.
+fn non_manifold_note(backend: &str, [before, after]: [&PolygonMesh; 2]) -> Option<String> {
+    let infos = structure_infos();
+    let info = infos.iter().find(|info| info.name == backend)?;
+    if !info.capabilities.non_manifold_vertices {
+        return None;
+    }
+    let [before, after] = [before, after].map(Facts::from_polygons);
+    let (kind, from, to) = match before.non_manifold_edges + after.non_manifold_edges {
+        0 => (
+            "vertices where parts of the surface only touch",
+            before.non_manifold_vertices,
+            after.non_manifold_vertices,
+        ),
+        _ => (
+            "edges with three or more faces",
+            before.non_manifold_edges,
+            after.non_manifold_edges,
+        ),
+    };
+    let [shown_from, shown_to] = [from, to].map(grouped);
+    let is_any = from + to > 0;
+    is_any.then(|| format!("not a manifold: {kind}: {shown_from} before, {shown_to} after"))
 }
 
 /// Explains that `backend` has no edits, and lists the backends with edits.

@@ -38,6 +38,85 @@ fn flat_area(obj: &Obj) -> f64 {
     areas.sum()
 }
 
+/// Three sheets of `n` × `n` squares with a common edge curve of `n` edges.
+fn sheets(n: usize) -> String {
+    let (mut vertices, mut faces) = (String::new(), String::new());
+    for z in 0..=n {
+        vertices += &format!("v 0 0 {z}\n");
+    }
+    for (sheet, [x, y]) in [[1.0, 0.0], [-0.5, 0.9], [-0.5, -0.9]]
+        .into_iter()
+        .enumerate()
+    {
+        let vertex = |i: usize, z: usize| match i {
+            0 => z + 1,
+            _ => (n + 1) * (sheet * n + i) + z + 1,
+        };
+        for i in 1..=n {
+            for z in 0..=n {
+                vertices += &format!("v {} {} {z}\n", x * i as f64, y * i as f64);
+            }
+            for z in 0..n {
+                let [a, b] = [vertex(i - 1, z), vertex(i, z)];
+                let [c, d] = [vertex(i, z + 1), vertex(i - 1, z + 1)];
+                faces += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+            }
+        }
+    }
+    vertices + &faces
+}
+
+#[test]
+fn what_becomes_of_non_manifold_edges_is_said() {
+    let sixfold = Sixfold::new();
+    sixfold.file("sheets.obj", &sheets(6));
+    for backend in ["polygon-soup", "indexed-face-set", "face-vertex"] {
+        let options = ["sheets.obj", "--backend", backend, "-o", "out.obj"];
+        let run = run_ok(
+            &sixfold,
+            &[&["decimate", "--ratio", "0.2"], &options[..]].concat(),
+        );
+        let inspected = run_ok(&sixfold, &["inspect", "out.obj", "--json", "-"]);
+        let facts: Value = serde_json::from_str(&inspected.stdout).expect("JSON");
+        let left = facts["mesh"]["non_manifold_edges"]
+            .as_u64()
+            .expect("a number");
+        assert!((1..6).contains(&left), "{left}");
+        let note = format!(
+            "note: out.obj: not a manifold: edges with three or more faces: 6 before, {left} after"
+        );
+        assert!(run.stderr.contains(&note), "{run:?}");
+        let run = run_ok(&sixfold, &[&["remesh"], &options[..]].concat());
+        assert!(
+            run.stderr
+                .contains("edges with three or more faces: 6 before"),
+            "{run:?}"
+        );
+    }
+    // Two triangles that meet in a point, and a manifold.
+    let touching = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n";
+    sixfold.file("touching.obj", touching);
+    sixfold.file("manifold.obj", TETRAHEDRON);
+    for (mesh, says) in [("touching.obj", true), ("manifold.obj", false)] {
+        let run = run_ok(
+            &sixfold,
+            &[
+                "remesh",
+                mesh,
+                "--backend",
+                "face-vertex",
+                "--edge-length",
+                "9",
+                "-o",
+                "out.obj",
+            ],
+        );
+        let note = "vertices where parts of the surface only touch: 1 before, 1 after";
+        assert_eq!(run.stderr.contains("not a manifold"), says, "{run:?}");
+        assert_eq!(run.stderr.contains(note), says, "{run:?}");
+    }
+}
+
 #[test]
 fn a_closed_surface_gets_the_target_number_of_faces_and_stays_closed() {
     let sixfold = Sixfold::new();
