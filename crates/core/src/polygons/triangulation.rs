@@ -274,7 +274,10 @@ impl PolygonCutter {
             };
         }
         let is_same = |i: usize, j: usize| vertices[i] == vertices[j];
-        let is_crossing = self.crosses(corners.iter().map(|&i| position(i)), is_same);
+        // By the rules for simple polygons, a polygon that touches itself can get flat triangles that a
+        // spike would do without.
+        let methods = [TOUCHING, Method::Exhaustive];
+        let is_crossing = self.crosses_by(&methods, corners.iter().map(|&i| position(i)), is_same);
         let has_area =
             |&&[a, b, c]: &&[usize; 3]| !is_same(a, b) && !is_same(b, c) && !is_same(c, a);
         let triangles = self.triangles.iter().filter(has_area);
@@ -313,6 +316,16 @@ impl PolygonCutter {
         corners: impl IntoIterator<Item = DVec3>,
         is_edge: impl Fn(usize, usize) -> bool,
     ) -> bool {
+        self.crosses_by(&[SIMPLE, TOUCHING, Method::Exhaustive], corners, is_edge)
+    }
+
+    /// Cuts a polygon like [`crosses`](Self::crosses), by the first of `methods` that succeeds.
+    fn crosses_by(
+        &mut self,
+        methods: &[Method],
+        corners: impl IntoIterator<Item = DVec3>,
+        is_edge: impl Fn(usize, usize) -> bool,
+    ) -> bool {
         self.corners.clear();
         self.corners.extend(corners);
         self.triangles.clear();
@@ -329,7 +342,7 @@ impl PolygonCutter {
         }
         let mut least = f64::INFINITY;
         let along_axis = std::mem::take(&mut self.projected);
-        for method in [SIMPLE, TOUCHING, Method::Exhaustive] {
+        for &method in methods {
             least = self.improve(least, &along_axis, method, &is_edge);
             if least == 0.0 {
                 return false;

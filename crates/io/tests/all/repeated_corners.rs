@@ -282,7 +282,7 @@ fn facets_of_stl_that_weld_to_an_edge_are_left_out() {
 }
 
 /// An outer square of side 3 and a hole of side 1: the outline runs along the bridge from 0 to 4 twice.
-/// Two squares that meet in vertex 2. A square with a spike from vertex 1 to 3.
+/// Two squares that meet in vertex 2. Two triangles that meet in vertex 0, with sides on common lines. A square with a spike from vertex 1 to 3.
 #[test]
 fn polygons_that_touch_themselves_in_a_vertex_are_cut() {
     let keyhole = "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\n\
@@ -290,7 +290,13 @@ fn polygons_that_touch_themselves_in_a_vertex_are_cut() {
     let squares = "f 1 2 3 4 5 6 3 7\nf 1 2 3\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 1 0\nv 2 2 0\n\
         v 1 2 0\nv 0 1 0\n";
     let spike = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 -1 0\nf 1 2 4 2 3\nf 1 3 2\n";
-    for (text, triangles, area) in [(keyhole, 8, 8.0), (squares, 4, 2.0), (spike, 1, 0.5)] {
+    let hourglass = "f 1 2 3 1 4 5\nf 1 3 2\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv -1 0 0\nv -1 -1 0\n";
+    for (text, triangles, area) in [
+        (keyhole, 8, 8.0),
+        (squares, 4, 2.0),
+        (hourglass, 2, 1.0),
+        (spike, 1, 0.5),
+    ] {
         let mesh = read("a.obj", text.as_bytes());
         assert_eq!(mesh.facts().degenerate_faces, 0);
         let line = 1 + text
