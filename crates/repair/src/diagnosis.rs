@@ -72,7 +72,7 @@ impl Diagnosis {
 
     /// Returns the steps that repair the faults of one kind in this mesh, in order: those of
     /// [`FaultKind::repairs`], after the steps that make a mesh an oriented manifold if they need one.
-    /// If most boundary edges are seams or cracks, the step for boundary edges welds them. Without steps
+    /// If most boundary edges are seams or cracks, the steps for boundary edges weld them. Without steps
     /// if most boundary edges are cracks that cannot be welded without harm.
     pub fn repairs(&self, kind: FaultKind) -> Vec<Step> {
         let mut steps = Vec::new();
@@ -81,7 +81,7 @@ impl Diagnosis {
         }
         if let (FaultKind::BoundaryEdge, Some(crack)) = (kind, self.most_edges_crack()) {
             let safe = Some(crack).filter(Crack::is_safe);
-            return safe.iter().map(Crack::weld).collect();
+            return safe.iter().flat_map(Crack::repairs).collect();
         }
         if kind == FaultKind::BoundaryEdge {
             // The first kind needs the most steps.

@@ -146,7 +146,7 @@ impl Diagnosed<'_> {
                 crack,
                 repair: crack
                     .is_safe()
-                    .then(|| self.command(&repair_options(&[crack.weld()]))),
+                    .then(|| self.command(&repair_options(&crack.repairs()))),
             }),
             left_out: self.left_out_record(),
         }
@@ -236,8 +236,11 @@ impl Diagnosed<'_> {
                     _ => notes.push("correct the coordinates".to_owned()),
                 },
                 _ if is_unwelded => {}
+                // The text about the crack has the options.
+                _ if fault.kind == FaultKind::BoundaryEdge
+                    && self.diagnosis.wide_crack().is_some() => {}
                 options => {
-                    let options = options.replace(' ', NO_BREAK).replace("\u{a0}--", " --");
+                    let options = unbroken(&options);
                     notes.push(format!("repair:{NO_BREAK}{options}"));
                 }
             }
@@ -279,7 +282,7 @@ impl Diagnosed<'_> {
             }
             (_, Some(_)) if crack.is_some() => {
                 let text = "close the cracks, then inspect the result for the other faults:";
-                let steps: Vec<Step> = crack.iter().map(Crack::weld).collect();
+                let steps: Vec<Step> = crack.iter().flat_map(Crack::repairs).collect();
                 (text.to_owned(), repair_options(&steps))
             }
             (Some((first, others)), _) => {
@@ -447,12 +450,18 @@ fn refusing(refuses: impl Fn(&Capabilities) -> bool) -> Vec<&'static str> {
     refusing.map(|info| info.name).collect()
 }
 
+/// Returns options that are broken into lines only before an option.
+fn unbroken(options: &str) -> String {
+    options.replace(' ', NO_BREAK).replace("\u{a0}--", " --")
+}
+
 /// Describes boundaries that nearly meet, and what welding them would harm.
 fn crack_text(crack: &Crack) -> String {
     let edges = grouped(crack.edges);
     let distance = crack.distance;
     if crack.is_safe() {
-        return format!("{edges} of them nearly meet and close at distance {distance}");
+        let options = unbroken(&repair_options(&crack.repairs()));
+        return format!("{edges} of them nearly meet: closed by {options}");
     }
     let faces = counted(crack.collapsed_faces, "face", "faces");
     let bad = counted(

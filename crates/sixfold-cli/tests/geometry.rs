@@ -244,6 +244,24 @@ fn cracks_are_welded_as_advised() {
     assert!((before - after).abs() < 1e-4 * before, "{before} {after}");
 }
 
+/// Two squares beside each other, the second one turned over.
+#[test]
+fn cracks_between_edges_in_the_same_direction_are_closed() {
+    let sixfold = Sixfold::new();
+    let squares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.01 0 0\nv 2 0 0\nv 2 1 0\nv 1.01 1 0\n\
+                   f 1 2 3 4\nf 8 7 6 5\n";
+    sixfold.file("squares.obj", squares);
+    let run = sixfold.passes(&["inspect", "squares.obj"]);
+    let advice = "2 of them nearly meet: closed by --weld=0.01 --orient outward;";
+    assert!(run.stdout.contains(advice), "{run:?}");
+    let options = ["--weld=0.01", "--orient", "outward", "-o", "out.obj"];
+    sixfold.passes(&[&["repair", "squares.obj"], &options[..]].concat());
+    let run = sixfold.passes(&["inspect", "out.obj", "--json", "-"]);
+    let facts = parsed(&run.stdout);
+    assert_eq!(facts["mesh"]["boundary_edges"], 6);
+    assert_eq!(facts["mesh"]["consistently_oriented"], true);
+}
+
 /// A box with a face without area, which is needed to keep it closed.
 /// Two parallel sheets and a crack beside a thin plate: welding would destroy them.
 #[test]

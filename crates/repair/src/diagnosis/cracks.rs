@@ -4,6 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold_core::{Incidence, Pair, Point, PolygonMesh, VertexId};
 use sixfold_spatial::{KdTree, PointQueries, SpatialIndex, VertexPoint};
 
+use super::fault::FaultKind;
 use crate::step::Step;
 use crate::weld::{Tolerance, Weld, representatives};
 
@@ -23,6 +24,9 @@ pub struct Crack {
     pub distance: f64,
     /// The number of boundary edges that are no longer boundary edges after welding.
     pub edges: usize,
+    /// The number of edges with two faces that run in the same direction after welding, and were two
+    /// boundary edges before. [`Step::Orient`](crate::Step::Orient) turns one of the faces.
+    pub same_direction: usize,
     /// The number of faces with corners at different positions that would become one vertex, and of
     /// faces that would have the same vertices as another face.
     pub collapsed_faces: usize,
@@ -31,10 +35,15 @@ pub struct Crack {
 }
 
 impl Crack {
-    /// Returns the step that closes the crack. It does no harm if the crack [is safe](Self::is_safe)
-    /// to weld.
-    pub fn weld(&self) -> Step {
-        Step::Weld(weld_within(self.distance))
+    /// Returns the steps that close the crack: a weld, and if it joins edges that run in the same
+    /// direction, an orientation of the faces. They do no harm if the crack [is safe](Self::is_safe) to
+    /// weld.
+    pub fn repairs(&self) -> Vec<Step> {
+        let orient = match self.same_direction {
+            0 => Vec::new(),
+            _ => FaultKind::TurnedFace.repairs(),
+        };
+        [vec![Step::Weld(weld_within(self.distance))], orient].concat()
     }
 
     /// Returns whether welding at this distance collapses no face and makes no non-manifold edge. Where
@@ -106,50 +115,53 @@ fn try_weld(polygons: &PolygonMesh, incidence: &Incidence<'_>, distance: f64) ->
         is_merged[of(v).index()] = true;
     }
     // Only edges and faces with an end that is merged change.
-    let [open, non_manifold] = edge_changes(incidence, of, &is_merged);
+    let [open, non_manifold, same_direction] = edge_changes(incidence, of, &is_merged);
     Some(Crack {
         distance,
         edges: usize::try_from(-open).unwrap_or(0),
+        same_direction: usize::try_from(same_direction).unwrap_or(0),
         collapsed_faces: collapsed_faces(polygons, of, &is_merged),
         non_manifold_edges: usize::try_from(non_manifold).unwrap_or(0),
     })
 }
 
-/// Returns how many more boundary edges, and edges with three or more faces, a mesh has if every
-/// vertex becomes the one that `of` returns. Two boundary edges that run in the same direction remain
-/// two.
+/// Returns how many more boundary edges, edges with three or more faces, and edges with two faces that
+/// run in the same direction a mesh has if every vertex becomes the one that `of` returns.
 fn edge_changes(
     incidence: &Incidence<'_>,
     of: impl Fn(VertexId) -> VertexId,
     is_merged: &[bool],
-) -> [isize; 2] {
-    let mut change = [0; 2];
-    let mut count = |faces: usize, by: isize| {
-        change[0] += if faces == 1 { by } else { 0 };
-        change[1] += if faces > 2 { by } else { 0 };
+) -> [isize; 3] {
+    let mut change = [0; 3];
+    let mut count = |[up, down]: [usize; 2], by: isize| {
+        let faces = up + down;
+        let is_kind = [faces == 1, faces > 2, faces == 2 && up != down];
+        for (change, is_kind) in change.iter_mut().zip(is_kind) {
+            *change += if is_kind { by } else { 0 };
+        }
     };
-    // By pair of vertices: the number of edges, of faces that run from the lower vertex to the higher,
-    // and of others.
-    let mut joined: FxHashMap<Pair<VertexId>, [usize; 3]> = FxHashMap::default();
+    // By pair of vertices: the number of faces that run from the lower vertex to the higher, and of
+    // others.
+    let mut joined: FxHashMap<Pair<VertexId>, [usize; 2]> = FxHashMap::default();
     for edge in incidence.edges() {
         if edge.ends.iter().any(|v| is_merged[v.index()]) {
-            count(edge.len(), -1);
+            let directions = [edge.len() - edge.downward(), edge.downward()];
+            count(directions, -1);
             let [low, high] = edge.ends.map(&of);
-            let (down, up) = (edge.downward(), edge.len() - edge.downward());
-            let [up, down] = if low < high { [up, down] } else { [down, up] };
+            let [up, down] = match low < high {
+                true => directions,
+                false => [directions[1], directions[0]],
+            };
             if low != high {
                 let joined = joined.entry(Pair::new(low, high)).or_default();
-                *joined = [joined[0] + 1, joined[1] + up, joined[2] + down];
+                *joined = [joined[0] + up, joined[1] + down];
             }
         }
     }
     // The order of the pairs does not change a sum.
-    for [edges, up, down] in joined.into_values() {
-        match edges == 2 && (up == 2 && down == 0 || up == 0 && down == 2) {
-            true => count(1, 2),
-            false => count(up + down, 1),
-        }
-    }
+    joined
+        .into_values()
+        .for_each(|directions| count(directions, 1));
     change
 }
 
@@ -309,7 +321,7 @@ mod tests {
             let crack = diagnose(&cracked, 0).crack.expect("all edges are cracks");
             prop_assert_eq!(crack.edges, boundary_edges(&cracked));
             prop_assert!(crack.distance <= 4.0 * f64::from(size), "{:?}", crack);
-            let welded = repair(&cracked, &[crack.weld()]).expect("a good tolerance").polygons;
+            let welded = repair(&cracked, &crack.repairs()).expect("a good tolerance").polygons;
             prop_assert_eq!(welded.face_count(), sphere.face_count());
             prop_assert_eq!(boundary_edges(&welded), 0);
         }
@@ -371,7 +383,7 @@ mod tests {
 
     /// The numbers of a crack are the differences that the weld makes.
     fn assert_true(mesh: &PolygonMesh, crack: Crack) {
-        let welded = repair(mesh, &[crack.weld()])
+        let welded = repair(mesh, &crack.repairs())
             .expect("a good tolerance")
             .polygons;
         let [before, after] = [mesh, &welded].map(Facts::from_polygons);
@@ -379,6 +391,7 @@ mod tests {
         assert_eq!(crack.edges, closed, "{crack:?}");
         let more = after.non_manifold_edges - before.non_manifold_edges;
         assert_eq!(crack.non_manifold_edges, more, "{crack:?}");
+        assert_eq!(after.inconsistent_edges, 0, "{crack:?}");
     }
 
     #[test]
@@ -399,6 +412,24 @@ mod tests {
         let sheets = crate::orientation::tests::together(&sheets);
         let crack = diagnose(&sheets, 0).crack.expect("edges nearly meet");
         assert!(crack.is_safe() && crack.edges == 40, "{crack:?}");
+        assert_eq!(crack.same_direction, 0);
+        assert_true(&sheets, crack);
+    }
+
+    /// Two sheets of which one is turned: their rims run in the same direction.
+    #[test]
+    fn rims_in_the_same_direction_are_a_crack() {
+        let right = sheet(20, [20.01, 0.0, 0.0]);
+        let turned = right.faces().iter().map(|(_, face)| {
+            let turned = face.iter().rev();
+            turned.map(|&v| v.into()).collect()
+        });
+        let turned: Vec<Vec<u32>> = turned.collect();
+        let right = PolygonMesh::new(right.positions().iter().copied(), turned).expect("valid");
+        let sheets = crate::orientation::tests::together(&[sheet(20, [0.0; 3]), right]);
+        let crack = diagnose(&sheets, 0).crack.expect("edges nearly meet");
+        assert!(crack.is_safe(), "{crack:?}");
+        assert_eq!((crack.edges, crack.same_direction), (40, 20));
         assert_true(&sheets, crack);
     }
 
@@ -448,7 +479,7 @@ mod tests {
             });
             let mesh = crate::orientation::tests::together(&parts.collect::<Vec<_>>());
             if let Some(crack) = diagnose(&mesh, 0).crack.filter(Crack::is_safe) {
-                let welded = repair(&mesh, &[crack.weld()]).expect("a good tolerance").polygons;
+                let welded = repair(&mesh, &crack.repairs()).expect("a good tolerance").polygons;
                 let facts = Facts::from_polygons(&welded);
                 prop_assert_eq!(facts.non_manifold_edges, 0);
                 prop_assert_eq!(welded.face_count(), mesh.face_count());

@@ -459,7 +459,7 @@ proptest! {
         let cracked = PolygonMesh::from_faces(points.collect(), separate.faces().clone()).expect("valid");
         let crack = diagnose(&cracked, 0).crack.expect("all edges are cracks");
         prop_assert!(crack.distance < 10.0 * width, "{} {}", crack.distance, width);
-        let welded = repair(&cracked, &[crack.weld()]).expect("valid").polygons;
+        let welded = repair(&cracked, &crack.repairs()).expect("valid").polygons;
         let [before, after] = [&cracked, &welded].map(open_and_non_manifold);
         prop_assert_eq!(before[0] - after[0], crack.edges);
         prop_assert_eq!((after, welded.face_count()), ([0, 0], sphere.face_count()));
