@@ -15,12 +15,9 @@ use crate::failure::Failure;
 use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{read_mesh, read_mesh_at, shown};
 use crate::progress::Spinner;
-use crate::text::print_notice;
+use crate::text::print_places;
 use crate::triangulate::{cut_polygons, triangulated};
 use sixfold_results::numbers::counted;
-
-/// Maximum number of listed faces that were left out.
-const SHOWN: usize = 5;
 
 /// A mesh for `sixfold inspect`, without its degenerate faces.
 pub(crate) struct InspectedMesh {
@@ -255,9 +252,11 @@ pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Fail
     let (joined, ignored) = (mesh.welded_vertices, std::mem::take(&mut mesh.notices));
     let origin = mesh.origin;
     let (creases, unused) = mesh.creases();
-    for crease in &unused {
-        print_notice(&format!("note: {}: {crease}", shown(path)));
-    }
+    let creases_left_out = counted(unused.len(), "crease", "creases");
+    print_places(
+        &format!("{}: left out {creases_left_out}", shown(path)),
+        unused.iter().map(ToString::to_string),
+    );
     let (polygons, left_out, places) = mesh.into_polygons_with_places();
     print_left_out(path, &left_out);
     Ok(ReadMesh {
@@ -340,17 +339,11 @@ pub(crate) fn file_hash(path: &Path) -> Option<String> {
 }
 
 fn print_left_out(path: &Path, left_out: &[LeftOut]) {
-    if left_out.is_empty() {
-        return;
-    }
     let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-    print_notice(&format!("note: {}: left out {faces}:", shown(path)));
-    for left_out in left_out.iter().take(SHOWN) {
-        print_notice(&format!("note:   {left_out}"));
-    }
-    if left_out.len() > SHOWN {
-        print_notice(&format!("note:   and {} more", left_out.len() - SHOWN));
-    }
+    print_places(
+        &format!("{}: left out {faces}", shown(path)),
+        left_out.iter().map(ToString::to_string),
+    );
 }
 
 fn into_study_mesh(path: &Path, mesh: FileMesh) -> (StudyMesh, Vec<LeftOut>, PolygonPlaces) {

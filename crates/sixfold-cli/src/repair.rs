@@ -17,14 +17,11 @@ use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::shape_check::check_faces;
-use crate::text::{TextOutput, WithNotices, print_notice, sanitize};
+use crate::text::{TextOutput, WithNotices, print_notice, print_places, sanitize};
 use sixfold_results::numbers::{counted, grouped};
 
 /// The exit code if the written file does not keep the repair.
 const NOT_KEPT: u8 = 1;
-
-/// Maximum number of places that a step left and that are listed.
-const SHOWN: usize = 5;
 
 /// Repairs the mesh and writes it.
 pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
@@ -77,9 +74,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     }
     let options = WriteOptions::default().with_creases(&creases);
     let format = output.format;
-    for notice in left_notices(arguments, &read, &repaired.steps) {
-        print_notice(&notice);
-    }
+    print_left(&arguments.files.mesh, &read, &repaired.steps);
     let place = |face| place_of(face, &read, &faces, &arguments.files.mesh);
     let losses = output.write_placed(&repaired.polygons, &options, place)?;
     let code = check_result(arguments, format, polygons, &repaired);
@@ -195,27 +190,20 @@ fn place_of(face: FaceId, read: &ReadMesh, maps: &[ElementMap<FaceId>], file: &P
     }
 }
 
-/// Describes the first places that each step left, and where they are in the file, if no earlier step has
+/// Prints the first places that each step left, and where they are in the file, if no earlier step has
 /// changed the mesh.
-fn left_notices(arguments: &Repair, read: &ReadMesh, steps: &[StepReport]) -> Vec<String> {
-    let file = shown(&arguments.files.mesh);
-    let mut notices = Vec::new();
+fn print_left(mesh: &Path, read: &ReadMesh, steps: &[StepReport]) {
     let mut is_as_read = true;
     for report in steps {
         let step = report.step;
-        for left in report.left.iter().take(SHOWN) {
+        let places = report.left.iter().map(|left| {
             let face = left.face().filter(|_| is_as_read);
             let place = face.map(|face| format!(" ({})", read.places.place(face, &read.polygons)));
-            let place = place.unwrap_or_default();
-            notices.push(format!("note: {file}: {step}: {left}{place}"));
-        }
-        if report.left.len() > SHOWN {
-            let more = report.left.len() - SHOWN;
-            notices.push(format!("note: {file}: {step}: and {more} more"));
-        }
+            format!("{left}{}", place.unwrap_or_default())
+        });
+        print_places(&format!("{}: {step}", shown(mesh)), places);
         is_as_read &= !report.counts.is_change();
     }
-    notices
 }
 
 fn failure(error: &RepairError) -> Failure {

@@ -15,7 +15,7 @@ use crate::output::is_stdout;
 use crate::progress::Spinner;
 use crate::seams::without_seams;
 use crate::shape_check::{check_faces, check_shape};
-use crate::text::{TextOutput, print_notice, sanitize};
+use crate::text::{TextOutput, print_places, sanitize};
 use sixfold_results::numbers::counted;
 
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
@@ -85,8 +85,12 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
             which: Components::All,
         };
         let repaired = repair(&triangles, &[orient]).map_err(Failure::unsupported)?;
-        for left in repaired.steps.iter().flat_map(|step| &step.left) {
-            print_notice(&format!("note: {}: {left}", shown(&arguments.files.mesh)));
+        for report in &repaired.steps {
+            let places = report.left.iter().map(ToString::to_string);
+            print_places(
+                &format!("{}: {}", shown(&arguments.files.mesh), report.step),
+                places,
+            );
         }
         let (creases, _) = repaired.carried_creases(&creases);
         Ok((repaired.polygons, creases))

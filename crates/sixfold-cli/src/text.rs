@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::output::{Output, cannot_write};
+use sixfold_results::numbers::grouped;
 
 pub(crate) use sixfold_results::sanitize;
 
@@ -160,8 +161,37 @@ static NOTICES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 /// Prints a note or a warning on standard error, and keeps it for the document of `--json`.
 pub(crate) fn print_notice(line: &str) {
     print_stderr(line);
+    keep_notice(line);
+}
+
+fn keep_notice(line: &str) {
     let mut notices = NOTICES.lock().unwrap_or_else(PoisonError::into_inner);
     notices.push(sanitize(line));
+}
+
+/// Maximum number of places that a notice lists.
+const SHOWN: usize = 5;
+
+/// Prints a note of one kind that has several places: `heading` with the only place, or the first
+/// places below it. The document of `--json` has it as one notice. Prints nothing without places.
+pub(crate) fn print_places(heading: &str, places: impl ExactSizeIterator<Item = String>) {
+    let count = places.len();
+    let mut shown: Vec<String> = places.take(SHOWN).collect();
+    if count > SHOWN {
+        shown.push(format!("and {} more", grouped(count - SHOWN)));
+    }
+    let notice = format!("note: {heading}: {}", shown.join("; "));
+    match count {
+        0 => return,
+        1 => print_stderr(&notice),
+        _ => {
+            print_stderr(&format!("note: {heading}:"));
+            for place in shown {
+                print_stderr(&format!("note:   {place}"));
+            }
+        }
+    }
+    keep_notice(&notice);
 }
 
 /// Returns the notices since the last call, for a document.

@@ -5,11 +5,8 @@ use sixfold::{FaceId, Facts, PolygonMesh, Triangulated, VertexId};
 use sixfold_study::StudyMesh;
 
 use crate::failure::Failure;
-use crate::text::print_notice;
+use crate::text::{print_notice, print_places};
 use sixfold_results::numbers::{counted, grouped};
-
-/// Maximum number of listed faces.
-const SHOWN: usize = 5;
 
 /// Cuts every polygon into triangles, and prints which polygons cross themselves. `places` are those
 /// of the faces in the file with the name `name`.
@@ -31,16 +28,8 @@ pub(crate) fn cut_polygons(
 /// Prints which faces of the file with the name `name` cross themselves. `place` describes where a
 /// face is.
 pub(crate) fn print_crossing(name: &str, faces: &[FaceId], place: impl Fn(FaceId) -> String) {
-    if faces.is_empty() {
-        return;
-    }
-    print_notice(&format!("note: {name}: {}:", crossing(faces.len())));
-    for &face in faces.iter().take(SHOWN) {
-        print_notice(&format!("note:   {}", place(face)));
-    }
-    if faces.len() > SHOWN {
-        print_notice(&format!("note:   and {} more", faces.len() - SHOWN));
-    }
+    let places = faces.iter().map(|&face| place(face));
+    print_places(&format!("{name}: {}", crossing(faces.len())), places);
 }
 
 /// Describes faces that cross themselves.

@@ -31,6 +31,22 @@ fn notices(document: &Value) -> Vec<String> {
     }
 }
 
+/// Returns the notes and warnings that a command printed, each with its places.
+fn printed_notices(stderr: &str) -> Vec<String> {
+    let mut notices: Vec<String> = Vec::new();
+    for line in stderr.lines() {
+        match (line.strip_prefix("note:   "), notices.last_mut()) {
+            (Some(place), Some(last)) if last.ends_with(':') => *last += &format!(" {place}"),
+            (Some(place), Some(last)) => *last += &format!("; {place}"),
+            _ if line.starts_with("note:") || line.starts_with("warning:") => {
+                notices.push(line.to_owned());
+            }
+            _ => {}
+        }
+    }
+    notices
+}
+
 #[test]
 fn every_notice_is_in_the_document() {
     let sixfold = Sixfold::new();
@@ -79,13 +95,61 @@ fn every_notice_is_in_the_document() {
     ];
     for command in commands {
         let run = sixfold.run(&[command, &["--json", "document.json"]].concat());
-        let printed = run.stderr.lines();
-        let printed =
-            printed.filter(|line| line.starts_with("note:") || line.starts_with("warning:"));
-        let printed: Vec<String> = printed.map(str::to_owned).collect();
+        let printed = printed_notices(&run.stderr);
         assert!(!printed.is_empty(), "{command:?}: no notice: {run:?}");
         let document = parsed(&text(&sixfold, "document.json"));
         assert_eq!(notices(&document), printed, "{command:?}");
+    }
+}
+
+/// A kind of notice with several places is one notice of the document.
+#[test]
+fn a_kind_of_notice_is_in_the_document_once() {
+    let sixfold = Sixfold::new();
+    let mut lines = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for _ in 0..7 {
+        lines += "f 1 1 2\n";
+    }
+    sixfold.file("lines.obj", &lines);
+    // Six squares in different planes, whose outside is not known, without a common vertex.
+    let (mut squares, mut faces) = (String::new(), String::new());
+    for i in 0..6 {
+        squares += &format!("v 0 0 {i}\nv 1 0 {i}\nv 1 1 {i}\nv 0 1 {i}\n");
+        let [a, b, c, d] = [1, 2, 3, 4].map(|corner| 4 * i + corner);
+        faces += &format!("f {a} {b} {c} {d}\n");
+    }
+    sixfold.file("squares.obj", &(squares + &faces));
+    let repair = [
+        "repair",
+        "squares.obj",
+        "--orient",
+        "outward",
+        "-o",
+        "out.obj",
+    ];
+    for (command, begin, end) in [
+        (
+            &["inspect", "lines.obj"][..],
+            "note: lines.obj: left out 7 degenerate faces: line 5: face 1 1 2",
+            "; and 2 more",
+        ),
+        (
+            &repair,
+            "note: squares.obj: orient faces: the component of face f0 (1 face)",
+            "; and 1 more",
+        ),
+    ] {
+        let run = sixfold.run(&[command, &["--json", "document.json"]].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let document = notices(&parsed(&text(&sixfold, "document.json")));
+        let [notice] = &document[..] else {
+            panic!("one notice: {document:?}");
+        };
+        assert!(
+            notice.starts_with(begin) && notice.ends_with(end),
+            "{notice}"
+        );
+        assert_eq!(printed_notices(&run.stderr), document);
     }
 }
 

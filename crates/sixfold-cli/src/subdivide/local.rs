@@ -18,7 +18,7 @@ use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::seams::joined;
 use crate::shape_check::check_faces;
-use crate::text::{TextOutput, print_notice, sanitize};
+use crate::text::{TextOutput, print_notice, print_places, sanitize};
 use sixfold_results::numbers::{counted, grouped};
 
 use super::check_tags;
@@ -135,6 +135,7 @@ fn read_face_list(path: &Path, numbers: &FaceNumbers) -> Result<Vec<FaceId>, Fai
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let in_file = numbers.in_file();
     let mut faces = Vec::new();
+    let mut left_out = Vec::new();
     for (line_number, line) in (1..).zip(text.lines()) {
         let at = format_args!("{shown}:{line_number}");
         let content = line.split('#').next().unwrap_or_default();
@@ -153,12 +154,16 @@ fn read_face_list(path: &Path, numbers: &FaceNumbers) -> Result<Vec<FaceId>, Fai
             let before = faces.len();
             faces.extend(numbers.faces(number));
             if faces.len() == before {
-                print_notice(&format!(
-                    "note: {at}: face {number} was left out of the mesh, so it is not selected"
-                ));
+                left_out.push(format!("line {line_number}: face {number}"));
             }
         }
     }
+    let they_were = match left_out.len() {
+        1 => "1 face is not selected, because it was".to_owned(),
+        n => format!("{} faces are not selected, because they were", grouped(n)),
+    };
+    let heading = format!("{shown}: {they_were} left out of the mesh");
+    print_places(&heading, left_out.into_iter());
     Ok(faces)
 }
 
