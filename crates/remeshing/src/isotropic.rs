@@ -266,16 +266,21 @@ impl<M: MeshEdit> Work<M> {
         (splits, true)
     }
 
+    /// Returns the edges in the order in which they are collapsed. Each collapse at a hub visits all of its
+    /// edges, so these come last: collapses around the hub lower its valence first.
+    fn collapse_order(&self, mesh: &M) -> Vec<[u32; 2]> {
+        let valences = self.numbering.valences(mesh);
+        let is_at_hub = |ends: &[u32; 2]| ends.iter().any(|&n| valences[n as usize] > HUB);
+        let mut edges = self.numbering.edges(mesh);
+        edges.sort_by_key(is_at_hub);
+        edges
+    }
+
     /// Collapses short edges, unless an edge would become too long. Returns the number of
     /// collapses.
     fn collapse_short(&mut self, mesh: &mut M) -> usize {
         let mut collapses = 0;
-        let valences = self.numbering.valences(mesh);
-        let is_at_hub = |ends: &[u32; 2]| ends.iter().any(|&n| valences[n as usize] > HUB);
-        let mut edges = self.numbering.edges(mesh);
-        // Collapses around a hub lower its valence first. Each one at the hub visits all of its edges.
-        edges.sort_by_key(is_at_hub);
-        for ends in edges {
+        for ends in self.collapse_order(mesh) {
             let Some(e) = self.numbering.edge(mesh, ends) else {
                 continue;
             };

@@ -160,3 +160,23 @@ fn remeshing_ends_when_converged_and_collapses_make_room() {
     assert!((200..500).contains(&report.faces), "{report:?}");
     assert!(report.iterations < 1000, "{report:?}");
 }
+
+/// A collapse at a hub visits all of its edges, so those around it come first: they make it smaller.
+#[test]
+fn edges_at_hubs_are_collapsed_last() {
+    // Vertex 0 is a pole, and so is the last one.
+    let sphere = sixfold_shapes::uv_sphere(HUB as usize + 1, 5).expect("small");
+    let sphere = sphere.triangulated().expect("small").polygons;
+    let mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
+    let work = Work {
+        numbering: Numbering::new(&mesh).expect("triangles"),
+        is_boundary: vec![false; mesh.vertex_count()],
+        long: 0.0,
+        short: 0.0,
+    };
+    let is_at_pole = |&[a, b]: &[u32; 2]| a == 0 || b as usize == mesh.vertex_count() - 1;
+    let edges = work.numbering.edges(&mesh);
+    assert!(is_at_pole(&edges[0]));
+    let (at_poles, others): (Vec<_>, Vec<_>) = edges.into_iter().partition(is_at_pole);
+    assert_eq!(work.collapse_order(&mesh), [others, at_poles].concat());
+}

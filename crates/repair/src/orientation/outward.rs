@@ -183,9 +183,7 @@ fn depths(
     // A point of each component: a triangle of it.
     let mut sample = vec![None; first.len()];
     for triangle in index.items() {
-        if triangle.area() > 0.0 {
-            sample[agreement.component(triangle.face)].get_or_insert(triangle);
-        }
+        sample[agreement.component(triangle.face)].get_or_insert(triangle);
     }
     let any_open = (0..kinds.len()).any(|c| is_near[c] && kinds[c] == Kind::Open);
     let directions = if any_open { DIRECTIONS } else { FEW_DIRECTIONS };
@@ -209,10 +207,8 @@ fn depths(
         };
         depths[inner] = depth(&hiding, kinds, is_around)
             .and_then(|depth| {
-                let mut outer = hiding
-                    .iter()
-                    .filter(|(c, part)| is_solid(*c) && *part > 0.5);
-                match outer.find(|(c, _)| touching[*c]) {
+                let mut hiding = hiding.iter();
+                match hiding.find(|&&(c, part)| part > 0.5 && touching[c]) {
                     Some(&(c, _)) => Err(c),
                     None => Ok(depth),
                 }
@@ -241,7 +237,7 @@ fn depth(
     // Several open components, such as two halves, can be around it together.
     let sum: f64 = open.iter().map(|(_, part)| part).sum();
     let whole = sum.round();
-    if whole > 0.0 && (sum - whole).abs() <= 1.0 - ENCLOSED {
+    if (sum - whole).abs() <= 1.0 - ENCLOSED {
         return Ok(solid + whole as usize);
     }
     let partly =
@@ -252,22 +248,17 @@ fn depth(
     }
 }
 
-/// Returns the box of each solid or open component; `None` for the others and if a coordinate is not
-/// finite.
+/// Returns the box of each solid or open component; `None` for the others, among them those with a coordinate
+/// that is not finite.
 fn bounds(polygons: &PolygonMesh, agreement: &Agreement, kinds: &[Kind]) -> Vec<Option<Bounds>> {
-    let components = agreement.conflicts.len();
-    let mut bounds: Vec<Option<Bounds>> = vec![None; components];
-    let mut is_finite = vec![true; components];
+    let mut bounds: Vec<Option<Bounds>> = vec![None; kinds.len()];
     for (f, face) in polygons.faces().iter() {
         let component = agreement.component(f);
-        let corners = face.iter().map(|&v| polygons.position(v));
-        is_finite[component] &= corners.clone().all(|p| p.is_finite());
-        let face = Bounds::from_points(corners);
-        let all = bounds[component].map_or(face, |all| all.union(face));
-        bounds[component] = Some(all);
-    }
-    for (component, one) in bounds.iter_mut().enumerate() {
-        *one = one.filter(|_| is_finite[component] && kinds[component] != Kind::Unclear);
+        if kinds[component] != Kind::Unclear {
+            let face = Bounds::from_points(face.iter().map(|&v| polygons.position(v)));
+            let all = bounds[component].map_or(face, |all| all.union(face));
+            bounds[component] = Some(all);
+        }
     }
     bounds
 }
@@ -464,14 +455,16 @@ fn depths_by_first_hits(
         depths
     };
     let [a, b, c] = [0, 1, 2].map(in_direction);
-    let most = a.into_iter().zip(b).zip(c).map(|((a, b), c)| {
-        if a.is_some() && (a == b || a == c) {
-            a
-        } else {
-            b.filter(|_| b == c)
-        }
-    });
-    most.collect()
+    let all = a.into_iter().zip(b).zip(c);
+    all.map(|((a, b), c)| majority([a, b, c])).collect()
+}
+
+/// Returns the value that at least two of three have.
+fn majority<T: PartialEq>([a, b, c]: [Option<T>; 3]) -> Option<T> {
+    match a == b || a == c {
+        true => a,
+        false => b.filter(|b| c.as_ref() == Some(b)),
+    }
 }
 
 /// Returns the other components that a ray hits an odd number of times, ascending.
@@ -529,3 +522,6 @@ fn direction(i: u32, n: u32) -> [f64; 3] {
     let turn = DMat3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.9);
     (turn * DVec3::new(x, y, z)).to_array()
 }
+
+#[cfg(test)]
+mod tests;

@@ -254,6 +254,95 @@ fn parts_that_touch_or_cross_are_undecided() {
     let undecided: Vec<usize> = oriented.undecided.iter().map(|u| u.face.index()).collect();
     assert_eq!(undecided, [0, 6, 12]);
     assert_eq!(oriented.reversed, (18..24).map(face).collect::<Vec<_>>());
+    // So is an open part inside them, and the others stay as they are.
+    let open = without(&cube(0.5, [-2.0; 3], false), |f| f == 0);
+    let oriented = outward_all(&together(&[&parts[..], &[open]].concat()));
+    let undecided: Vec<usize> = oriented.undecided.iter().map(|u| u.face.index()).collect();
+    assert_eq!(undecided, [0, 6, 12, 24]);
+    assert_eq!(oriented.reversed, (18..24).map(face).collect::<Vec<_>>());
+}
+
+#[test]
+fn an_open_part_may_cross_a_solid() {
+    let open = without(&cube(0.5, [1.0, 0.0, 0.0], false), |f| f == 0);
+    for parts in [
+        [cube(1.0, [0.0; 3], true), open.clone()],
+        [open, cube(1.0, [0.0; 3], true)],
+    ] {
+        let oriented = outward_all(&together(&parts));
+        assert_eq!(oriented.undecided, []);
+        let is_solid = |f: &&FaceId| (f.index() < 6) == (parts[0].face_count() == 6);
+        assert!(oriented.reversed.iter().filter(is_solid).count() >= 5);
+    }
+}
+
+/// Returns whether the side of a mesh that faces outward is decided. It must not depend on the unit of the
+/// coordinates, on the place of the mesh and on its side before.
+fn is_decided(mesh: &PolygonMesh) -> bool {
+    let mut decided = Vec::new();
+    for scale in [1e-3, 1.0, 1e3] {
+        for place in [0.0, 11.3] {
+            let points = mesh.positions().iter();
+            let points = points.map(|&p| scale * (p + place * Point::new(1.0, -0.7, 0.4)));
+            let moved = PolygonMesh::from_faces(points.collect(), mesh.faces().clone());
+            let moved = moved.expect("the same faces");
+            for inward in [false, true] {
+                let oriented = outward_all(&with_reversed(&moved, |_| inward));
+                let is_decided = oriented.undecided.is_empty();
+                assert_eq!(oriented.polygons == moved, is_decided || !inward);
+                decided.push(is_decided);
+            }
+        }
+    }
+    decided.dedup();
+    assert_eq!(decided.len(), 1);
+    decided[0]
+}
+
+/// Returns a sheet of squares with corners at these heights, in rows.
+fn heights<const N: usize>(rows: &[[f32; N]]) -> PolygonMesh {
+    let points = rows.iter().enumerate().flat_map(|(y, row)| {
+        let point = move |(x, &z)| [x as f32, y as f32, z];
+        row.iter().enumerate().map(point)
+    });
+    let n = N as u32;
+    let corners = (0..rows.len() as u32 - 1).flat_map(|y| (0..n - 1).map(move |x| y * n + x));
+    let squares = corners.map(|v| [v, v + 1, v + n + 1, v + n]);
+    PolygonMesh::new(points, squares).expect("valid")
+}
+
+#[test]
+fn a_side_is_decided_if_the_mesh_clearly_bulges() {
+    // Cones.
+    for (height, expected) in [(0.004, false), (0.006, true)] {
+        let prism = sixfold_shapes::prism(16).expect("small");
+        let mut points = prism.positions()[16..].to_vec();
+        points.push(Point::new(0.0, 0.0, points[0].z + height));
+        let cone = PolygonMesh::new(points, (0..16).map(|i| [i, (i + 1) % 16, 16]));
+        assert_eq!(is_decided(&cone.expect("valid")), expected, "{height}");
+    }
+    // A hill beside a valley.
+    for (depth, expected) in [(0.2, true), (0.4, false)] {
+        let mesh = heights(&[[0.0; 5], [0.0, 1.0, 0.0, -depth, 0.0], [0.0; 5]]);
+        let mesh = mesh.triangulated().expect("small").polygons;
+        assert_eq!(is_decided(&mesh), expected, "{depth}");
+    }
+    // Squares so bent that the side depends on how they are cut.
+    for (m, expected) in [(0.0, true), (-0.5, false)] {
+        let mesh = heights(&[[0.0, m, 0.0], [m, 1.0, m], [0.0, m, 0.0]]);
+        assert_eq!(is_decided(&mesh), expected, "{m}");
+    }
+    // A cube with a dent, and a flat closed part.
+    let cube = sixfold_shapes::cube();
+    let mut points = cube.positions().to_vec();
+    points[0] = Point::ZERO;
+    let dented = PolygonMesh::from_faces(points, cube.faces().clone()).expect("the same faces");
+    assert!(is_decided(&dented));
+    let pillow = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2], [0, 2, 1]]);
+    let pillow = pillow.expect("valid");
+    assert!(!is_decided(&pillow));
+    let reason = outward_all(&pillow).undecided[0].reason;
+    assert_eq!(reason, UndecidedReason::NoVolume);
 }
 
 #[test]

@@ -159,3 +159,40 @@ fn area(polygon: &[DVec2]) -> f64 {
         .map(|pair| (pair[0] - first).perp_dot(pair[1] - first))
         .sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a polygon that runs around its first corner several times, and its triangles at this corner.
+    /// Each time, it is as far away as `radius` returns.
+    fn coil(
+        corners: usize,
+        turns: usize,
+        radius: impl Fn(usize) -> f64,
+    ) -> (Vec<DVec2>, Vec<[usize; 3]>) {
+        let around = (0..=corners * turns).map(|i| {
+            let angle = i as f64 * std::f64::consts::TAU / corners as f64;
+            radius(i / corners) * DVec2::from_angle(angle)
+        });
+        let points: Vec<DVec2> = std::iter::once(DVec2::ZERO).chain(around).collect();
+        let triangles = (1..=corners * turns).map(|i| [0, i, i + 1]);
+        (points, triangles.collect())
+    }
+
+    /// With many corners, not all pairs of triangles are looked at.
+    #[test]
+    fn the_overlap_of_many_triangles_is_found_or_estimated() {
+        for (corners, is_exact) in [(20, true), (3000, false)] {
+            for turns in 1..=4 {
+                let (points, triangles) = coil(corners, turns, |_| 1.0);
+                let of_corners = triangles.iter().map(|t| t.map(|i| points[i]));
+                assert_eq!(overlap(of_corners.collect()).1, is_exact);
+                // Each point is in as many triangles as there are turns.
+                let expected = (turns - 1) as f64 / 2.0;
+                let found = overlapping_part(&points, &triangles);
+                assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+            }
+        }
+    }
+}
