@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use sixfold_results::{Audit, BackendAudit, Policy};
-use sixfold_study::{Backend, MAX_SCANNED_FACES, Settings, audit, count_allocations};
+use sixfold_study::{Backend, LONG_RINGS, MAX_SCANNED_FACES, Settings, audit, count_allocations};
 
 use crate::AllocatorCounters;
 use crate::arguments::Memory;
@@ -197,12 +197,17 @@ fn operations_legend(audit: &Audit) -> Vec<String> {
             grouped(MAX_SCANNED_FACES)
         ),
     };
+    let mut operations = audit.backends.iter().flat_map(|entry| &entry.operations);
+    let rings = match operations.any(|o| o.reason.as_deref() == Some(LONG_RINGS)) {
+        true => format!(", or {LONG_RINGS}"),
+        false => String::new(),
+    };
     vec![
         "Allocated bytes are all that one run requests, also those that it frees again. The result \
          is the structure (build), the depths of the faces (ff_bfs), the refined mesh, or the mesh \
          after the edits."
             .to_owned(),
-        format!("–: not run, because the structure or the mesh does not allow the operation{scans}."),
+        format!("–: not run, because the structure or the mesh does not allow the operation{scans}{rings}."),
     ]
 }
 

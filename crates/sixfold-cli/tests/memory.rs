@@ -133,6 +133,52 @@ fn operations_that_scan_are_run_on_small_meshes_only() {
     assert_eq!(words.matches("scans").count(), 1, "{run:?}");
 }
 
+/// Two cones over one rim: each edit at a tip visits all faces of a cone.
+#[test]
+fn edits_are_not_run_at_vertices_with_very_many_faces() {
+    let sixfold = Sixfold::new();
+    for (rim, is_run) in [(1000_usize, true), (4000, false)] {
+        let mut text = String::from("v 0 0 1\nv 0 0 -1\n");
+        for i in 0..rim {
+            let (sin, cos) = (i as f64 / rim as f64 * std::f64::consts::TAU).sin_cos();
+            text += &format!("v {cos} {sin} 0\n");
+        }
+        for i in 0..rim {
+            let [a, b] = [i + 3, (i + 1) % rim + 3];
+            text += &format!("f {a} {b} 1\nf {b} {a} 2\n");
+        }
+        sixfold.file("cones.obj", &text);
+        let command = [
+            "memory",
+            "cones.obj",
+            "--backends",
+            "half-edge",
+            "--json",
+            "a.json",
+        ];
+        let run = run_ok(&sixfold, &command);
+        let why = "edits visit the faces around a vertex, and some vertices have very many";
+        let shown = run.stdout.replace('\n', " ");
+        assert_eq!(shown.contains(why), !is_run, "{run:?}");
+        let audit = finding(&crate::run::text(&sixfold, "a.json"));
+        for operation in audit["backends"]["half-edge"]["operations"]
+            .as_array()
+            .expect("a list")
+        {
+            let name = operation["operation"].as_str().expect("a name");
+            let is_edit = [
+                "split_collapse",
+                "flip_all",
+                "decimate_half",
+                "decimate_tenth",
+            ]
+            .contains(&name);
+            let is_left_out = operation["reason"] == why;
+            assert_eq!(is_left_out, is_edit && !is_run, "{operation}");
+        }
+    }
+}
+
 #[test]
 fn a_corner_table_holds_a_triangulated_quad() {
     let sixfold = Sixfold::new();

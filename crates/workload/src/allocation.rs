@@ -38,11 +38,19 @@ pub enum NotCounted {
     /// The operation would take too long, because the structure scans all faces for each element
     /// and the mesh is large.
     Scans,
+    /// The operation would take too long, because an edit visits the faces around its vertices, and
+    /// some vertices have very many.
+    LongRings,
 }
 
 /// Size limit for meshes, in faces. Operations that scan all faces for each element are not run on
 /// larger meshes than this limit.
 pub const MAX_SCANNED_FACES: usize = 2_000;
+
+/// Limit for the work of edits on meshes with few edges: [`ring_work`] of larger meshes may be as large as
+/// this for each edge.
+const MAX_RING_WORK: usize = 20_000_000;
+const MAX_RING_WORK_PER_EDGE: usize = 100;
 
 /// A clock that returns allocated bytes instead of time. Set-up is excluded.
 struct ByteClock<'a>(&'a dyn AllocationCounter);
@@ -51,6 +59,19 @@ impl Clock for ByteClock<'_> {
     fn now(&self) -> Time {
         Time::from_wall_ns(self.0.allocated() as f64)
     }
+}
+
+/// Returns the number of faces that are visited if the faces around both ends of each side are: the sum
+/// of the squares of the numbers of faces at the vertices.
+fn ring_work(polygons: &PolygonMesh) -> usize {
+    let mut faces = vec![0_usize; polygons.vertex_count()];
+    for v in polygons.faces().corners() {
+        faces[v.index()] += 1;
+    }
+    faces
+        .into_iter()
+        .map(|n| n.saturating_mul(n))
+        .fold(0, usize::saturating_add)
 }
 
 impl Backend {
@@ -82,6 +103,10 @@ impl Backend {
         let scans = operation.scans(&self.info.costs).contains(&true);
         if scans && !is_native && polygons.face_count() > MAX_SCANNED_FACES {
             return Err(NotCounted::Scans);
+        }
+        let limit = MAX_RING_WORK.max(MAX_RING_WORK_PER_EDGE.saturating_mul(edges));
+        if matches!(operation, Operation::EditPass(_)) && ring_work(polygons) > limit {
+            return Err(NotCounted::LongRings);
         }
         let bytes = self.allocated_by_run(operation, polygons, counter);
         let counts = polygons.counts(edges);
