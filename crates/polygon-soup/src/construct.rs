@@ -31,7 +31,7 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         let mesh = Self {
             faces: ScannedFaces::new(corners, faces.spans()),
         };
-        if has_isolated_vertex(polygons)
+        if polygons.has_faces().contains(&false)
             || mesh
                 .faces()
                 .any(|f| has_coincident_corners(mesh.face_positions(f)))
@@ -188,14 +188,6 @@ impl<E: Editing> Measured for PolygonSoup<E> {
 #[inline]
 fn canonical(point: Point) -> Point {
     SoupVertex::at(point).position()
-}
-
-fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
-    let mut used = vec![false; polygons.vertex_count()];
-    for v in polygons.faces().corners() {
-        used[v.index()] = true;
-    }
-    used.contains(&false)
 }
 
 /// Returns whether two corners of a face are at the same position. The coordinates must not be −0.

@@ -264,13 +264,10 @@ fn find_vertices(
     for v in several {
         found.add(FaultKind::NonManifoldVertex, Place::Vertex(v));
     }
-    let mut is_used = vec![false; polygons.vertex_count()];
-    for v in polygons.faces().corners() {
-        is_used[v.index()] = true;
-    }
+    let has_faces = polygons.has_faces();
     let mut is_first = vec![true; positions.len()];
     for v in polygons.vertices() {
-        if !is_used[v.index()] {
+        if !has_faces[v.index()] {
             found.add(FaultKind::IsolatedVertex, Place::Vertex(v));
         }
         if !polygons.position(v).is_finite() {

@@ -204,13 +204,9 @@ const SAMPLE_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Returns the positions of the vertices that faces name, each once, in the order of the vertices.
 fn vertices_of_faces(polygons: &PolygonMesh) -> Vec<DVec3> {
-    let mut is_named = vec![false; polygons.vertex_count()];
-    for corner in polygons.faces().corners() {
-        is_named[corner.index()] = true;
-    }
-    let named = polygons.positions().iter().zip(is_named);
-    named
-        .filter(|&(_, is_named)| is_named)
+    let positions = polygons.positions().iter().zip(polygons.has_faces());
+    positions
+        .filter(|&(_, has_face)| has_face)
         .map(|(position, _)| position.as_dvec3())
         .collect()
 }

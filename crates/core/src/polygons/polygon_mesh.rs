@@ -128,6 +128,15 @@ impl PolygonMesh {
         }
     }
 
+    /// Returns whether a vertex has a face, for each vertex. O(vertices + corners).
+    pub fn has_faces(&self) -> Vec<bool> {
+        let mut has_faces = vec![false; self.vertex_count()];
+        for v in self.faces.corners() {
+            has_faces[v.index()] = true;
+        }
+        has_faces
+    }
+
     /// Returns an iterator over all vertices.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + Clone {
         let vertices = row(self.positions.len());

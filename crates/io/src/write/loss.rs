@@ -123,7 +123,7 @@ pub(super) fn losses(
     let is_stl = format.is_stl();
     let mut used = Vec::new();
     if is_stl {
-        used = used_vertices(polygons);
+        used = polygons.has_faces();
         losses.push(Loss::EqualPositions(repeated_positions(polygons, &used)));
     }
     if !format.holds_polygons() {
@@ -172,15 +172,6 @@ pub(super) fn losses(
     }
     losses.retain(|loss| loss.count() > 0);
     losses
-}
-
-/// Returns for each vertex whether it has a face.
-fn used_vertices(polygons: &PolygonMesh) -> Vec<bool> {
-    let mut used = vec![false; polygons.vertex_count()];
-    for v in polygons.faces().corners() {
-        used[v.index()] = true;
-    }
-    used
 }
 
 /// Returns the number of `used` vertices minus the number of their different positions.
