@@ -163,6 +163,10 @@ pub trait TimedBackend {
     fn is_external(&self) -> bool {
         false
     }
+    /// Returns whether the backend can run an operation on a sample of the elements.
+    fn can_sample(&self) -> bool {
+        true
+    }
     /// Returns for each of the nine relations which part of the mesh a query of the relation
     /// visits.
     fn costs(&self) -> [QueryCost; 9];

@@ -1,5 +1,6 @@
 //! Runs jobs on one structure and measures their times.
 
+use std::collections::HashMap;
 use std::hint::black_box;
 
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
@@ -64,8 +65,12 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         let Some(draw) = self.draw else {
             return self.run_whole(operation, series);
         };
-        self.drawn
-            .extend_to(&self.mesh, self.polygons, draw, sample.size);
+        for kind in operation.kinds() {
+            if sample.scanned[kind.index()] {
+                self.drawn
+                    .extend_to(kind, &self.mesh, self.polygons, draw, sample.size);
+            }
+        }
         let (size, scale) = sizes_and_scales(draw, sample);
         let sampled = SampledElements {
             drawn: &self.drawn,
@@ -220,37 +225,62 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
 }
 
 impl<M: Representation> HandleLists<M> {
-    /// Looks up handles of drawn elements until there are `size` handles of each kind.
-    fn extend_to(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
+    /// Looks up handles of drawn elements of one kind until there are `size` of them.
+    fn extend_to(
+        &mut self,
+        kind: ElementKind,
+        mesh: &M,
+        polygons: &PolygonMesh,
+        draw: &Draw,
+        size: usize,
+    ) {
         fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
             &drawn[known..drawn.len().min(size).max(known)]
         }
-        let vertices = missing(&draw.vertices, self.vertices.len(), size).iter();
-        self.vertices
-            .extend(vertices.map(|&v| M::vertex_handle(polygons, v)));
-        let edges = missing(&draw.edges, self.edges.len(), size).iter();
-        self.edges
-            .extend(edges.map(|&side| edge_handle(mesh, polygons, side)));
-        let faces = missing(&draw.faces, self.faces.len(), size).iter();
-        self.faces
-            .extend(faces.map(|&f| M::face_handle(polygons, f)));
+        match kind {
+            ElementKind::Vertex => {
+                let vertices = missing(&draw.vertices, self.vertices.len(), size).iter();
+                self.vertices
+                    .extend(vertices.map(|&v| M::vertex_handle(polygons, v)));
+            }
+            ElementKind::Edge => {
+                let sides = missing(&draw.edges, self.edges.len(), size);
+                self.edges.extend(edge_handles(mesh, polygons, sides));
+            }
+            ElementKind::Face => {
+                let faces = missing(&draw.faces, self.faces.len(), size).iter();
+                self.faces
+                    .extend(faces.map(|&f| M::face_handle(polygons, f)));
+            }
+        }
     }
 }
 
-/// Finds the edge of `side` among the edges of its face.
-pub(crate) fn edge_handle<M: Representation>(
+/// Finds the edge of each side among the edges of its face. Visits each face once.
+pub(crate) fn edge_handles<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
-    side: Side,
-) -> M::Edge {
-    let [a, b] = side.ends.map(|v| M::vertex_handle(polygons, v));
-    let joins = |&e: &M::Edge| {
-        let ends = mesh.edge_vertices(e);
-        ends == [a, b] || ends == [b, a]
-    };
-    mesh.face_edges(M::face_handle(polygons, side.face))
-        .find(joins)
-        .expect("a face has an edge for each of its sides")
+    sides: &[Side],
+) -> Vec<M::Edge> {
+    let mut by_face: Vec<usize> = (0..sides.len()).collect();
+    by_face.sort_unstable_by_key(|&i| sides[i].face);
+    let mut found = vec![None; sides.len()];
+    for group in by_face.chunk_by(|&i, &j| sides[i].face == sides[j].face) {
+        let face = M::face_handle(polygons, sides[group[0]].face);
+        let edges = mesh.face_edges(face).map(|e| {
+            let [a, b] = mesh.edge_vertices(e);
+            ([a.min(b), a.max(b)], e)
+        });
+        let edges: HashMap<[M::Vertex; 2], M::Edge> = edges.collect();
+        for &i in group {
+            let [a, b] = sides[i].ends.map(|v| M::vertex_handle(polygons, v));
+            found[i] = edges.get(&[a.min(b), a.max(b)]).copied();
+        }
+    }
+    let found = found.into_iter();
+    found
+        .map(|e| e.expect("a face has an edge for each of its sides"))
+        .collect()
 }
 
 /// The first elements of the draw: as many of each kind as `size` says.

@@ -39,6 +39,7 @@ pub(crate) fn compare_checksums(
                 && same_input(other, entry)
                 && other.subject != entry.subject
                 && other.outcome.is_some()
+                && can_be_compared(entry, other, subjects)
                 && is_reference(subjects, other.subject)
         });
         // Prefer a full run as the reference: its backend can also run the sample in little time.
@@ -97,6 +98,15 @@ pub(crate) fn compare_checksums(
         }
     };
     entries.iter().map(agreement).collect()
+}
+
+/// Returns whether the backend of the larger of two jobs can also run the smaller one.
+fn can_be_compared(one: &Entry, other: &Entry, subjects: &[Box<dyn TimedBackend + '_>]) -> bool {
+    let larger = match size(&one.job) <= size(&other.job) {
+        true => other,
+        false => one,
+    };
+    one.job.sample == other.job.sample || subjects[larger.subject].can_sample()
 }
 
 /// Returns whether two tasks have the same result. All methods of a subdivision scheme make the same

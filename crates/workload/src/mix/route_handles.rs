@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use sixfold::{MeshQuery, Point, PolygonMesh, Representation, VertexId};
 
+use crate::draw::Side;
 use crate::handle_lists::HandleLists;
 use crate::mix::route::Route;
 use crate::operation::ElementKind;
 use crate::sweeps::Sink;
-use crate::timed_structure::edge_handle;
+use crate::timed_structure::edge_handles;
 use crate::workload::Action;
 
 impl<M: MeshQuery> HandleLists<M> {
@@ -81,17 +82,13 @@ impl<M: Representation> HandleLists<M> {
             return handles;
         }
         let vertices = route.vertices.iter().filter(|v| is_free(v));
-        let edges = route
-            .edges
-            .iter()
-            .filter(|side| side.ends.iter().all(is_free));
+        let edges = route.edges.iter().copied();
+        let edges: Vec<Side> = edges.filter(|side| side.ends.iter().all(is_free)).collect();
         let is_free_face = |f: &&sixfold::FaceId| polygons.faces().face(**f).iter().all(is_free);
         let faces = route.faces.iter().filter(is_free_face);
         Self {
             vertices: vertices.map(|&v| M::vertex_handle(polygons, v)).collect(),
-            edges: edges
-                .map(|&side| edge_handle(mesh, polygons, side))
-                .collect(),
+            edges: edge_handles(mesh, polygons, &edges),
             faces: faces.map(|&f| M::face_handle(polygons, f)).collect(),
         }
     }

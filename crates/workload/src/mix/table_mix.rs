@@ -163,6 +163,11 @@ impl TimedBackend for TableMix<'_> {
         TABLES
     }
 
+    /// Each query of a table is short, so passes always run in full.
+    fn can_sample(&self) -> bool {
+        false
+    }
+
     fn costs(&self) -> [QueryCost; 9] {
         [QueryCost::Local; 9]
     }
