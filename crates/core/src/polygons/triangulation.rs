@@ -3,6 +3,7 @@
 mod conflicts;
 mod ears;
 mod exhaustive;
+mod loops;
 mod outside;
 mod overlap;
 mod plane;
@@ -340,8 +341,12 @@ impl PolygonCutter {
             self.triangles.extend(triangles);
             return false;
         }
-        let mut least = f64::INFINITY;
         let along_axis = std::mem::take(&mut self.projected);
+        self.ears.start(self.corners.len());
+        let mut least = self.cut_loops(&along_axis, &is_edge);
+        if least == 0.0 {
+            return false;
+        }
         for &method in methods {
             least = self.improve(least, &along_axis, method, &is_edge);
             if least == 0.0 {
@@ -356,6 +361,34 @@ impl PolygonCutter {
             }
         }
         least > MAX_WRONG
+    }
+
+    /// Cuts the parts of a large polygon that touches itself in corners, one by one. Keeps the triangles,
+    /// and returns the wrong part of their area; infinity if nothing was cut.
+    fn cut_loops(&mut self, projected: &[DVec2], is_edge: &impl Fn(usize, usize) -> bool) -> f64 {
+        let Some(loops) = (projected.len() >= SPLIT_CORNERS)
+            .then(|| loops::split(projected))
+            .flatten()
+        else {
+            return f64::INFINITY;
+        };
+        self.triangles.extend(loops.joints);
+        for part in &loops.parts {
+            let corners: Vec<DVec3> = part.iter().map(|&i| self.corners[i]).collect();
+            let points: Vec<DVec2> = part.iter().map(|&i| projected[i]).collect();
+            for shape in [Shape::Simple, Shape::Touching] {
+                self.tried.clear();
+                let is_edge = |i: usize, j: usize| is_edge(part[i], part[j]);
+                self.ears
+                    .clip(&corners, &points, shape, is_edge, &mut self.tried);
+                if plane::turned_part(&points, &self.tried) == 0.0 {
+                    break;
+                }
+            }
+            let cut = self.tried.iter().map(|t| t.map(|i| part[i]));
+            self.triangles.extend(cut);
+        }
+        wrong_part(projected, &self.triangles, |_| false)
     }
 
     /// Cuts the polygon with the corners `projected`. Keeps the triangles and returns the wrong part of
@@ -374,25 +407,18 @@ impl PolygonCutter {
             triangles,
             tried,
         } = self;
+        if ears.is_exhausted() && least.is_finite() {
+            return least;
+        }
         tried.clear();
         match method {
             Method::Ears(shape) => ears.clip(corners, projected, shape, is_edge, tried),
             Method::Exhaustive if corners.len() > exhaustive::MAX_CORNERS => return least,
             Method::Exhaustive => exhaustive::triangulate(corners, projected, is_edge, tried),
         }
-        let turned = plane::turned_part(projected, tried);
-        let wrong = if turned > 0.0 {
-            turned
-        } else if !overlap::may_overlap(projected) || is_proved_simple(ears, projected, method) {
-            0.0
-        } else {
-            let overlapping = overlap::overlapping_part(projected, tried);
-            if overlapping > MAX_WRONG {
-                overlapping
-            } else {
-                0.0
-            }
-        };
+        let wrong = wrong_part(projected, tried, |projected| {
+            is_proved_simple(ears, projected, method)
+        });
         if wrong >= least {
             return least;
         }
@@ -433,6 +459,25 @@ fn without_spikes(face: &[VertexId]) -> Vec<usize> {
     corners
 }
 
+/// Returns the part of the area of the triangles of a polygon that is turned over, or else the part that
+/// overlaps, if it is larger than rounding explains. `is_simple` may prove that none overlap.
+fn wrong_part(
+    projected: &[DVec2],
+    triangles: &[[usize; 3]],
+    is_simple: impl FnOnce(&[DVec2]) -> bool,
+) -> f64 {
+    let turned = plane::turned_part(projected, triangles);
+    if turned > 0.0 || !overlap::may_overlap(projected) || is_simple(projected) {
+        return turned;
+    }
+    let overlapping = overlap::overlapping_part(projected, triangles);
+    if overlapping > MAX_WRONG {
+        overlapping
+    } else {
+        0.0
+    }
+}
+
 /// A way to cut a polygon.
 #[derive(Clone, Copy)]
 enum Method {
@@ -447,7 +492,7 @@ fn is_proved_simple(ears: &mut EarClipping, projected: &[DVec2], method: Method)
     match method {
         Method::Ears(_) if projected.len() > MEASURED_CORNERS => [Shape::Simple, Shape::Touching]
             .into_iter()
-            .any(|shape| outside::has_cut(ears, projected, shape)),
+            .any(|shape| outside::has_cut(ears, projected, shape) && !ears.is_exhausted()),
         _ => false,
     }
 }
@@ -458,6 +503,9 @@ const TOUCHING: Method = Method::Ears(Shape::Touching);
 /// The largest part of the area of the triangles that is turned over, or that overlaps, because of
 /// rounded coordinates, where the polygon touches itself.
 const MAX_WRONG: f64 = 1e-6;
+
+/// The fewest corners of a polygon that is split where it touches itself.
+const SPLIT_CORNERS: usize = 32;
 
 /// The most corners of a polygon whose overlapping triangles are looked for directly.
 const MEASURED_CORNERS: usize = 64;
@@ -495,4 +543,48 @@ fn convex_quad(
         _ => worst(second) > (1.0 + BETTER) * worst(first),
     };
     Some(if is_second_better { second } else { first })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Quads around one point, at which the polygon touches itself as often. Every other one has a hole that
+    /// touches it in another corner.
+    #[test]
+    fn a_polygon_that_touches_itself_very_often_is_cut() {
+        let (petals, radius) = (40_000, 10.0);
+        let at = |petal: usize, part: f64, radius: f64| {
+            let angle = (petal as f64 + part) / petals as f64 * std::f64::consts::TAU;
+            radius * DVec3::new(angle.cos(), angle.sin(), 0.0)
+        };
+        let corners: Vec<DVec3> = (0..petals)
+            .flat_map(|petal| {
+                let outer = [0.0, 0.3, 0.6].map(|part| at(petal, part, radius));
+                let hole = [0.2, 0.4].map(|part| at(petal, part, 5.0));
+                let [first, second, third] = outer;
+                match petal % 2 == 0 {
+                    true => vec![DVec3::ZERO, first, second, third],
+                    false => vec![DVec3::ZERO, first, second, hole[0], hole[1], second, third],
+                }
+            })
+            .collect();
+        let mut cutter = PolygonCutter::default();
+        let cut = cutter.cut(corners.iter().copied(), |_, _| false);
+        assert!(!cut.is_crossing);
+        assert_eq!(cut.triangles.len(), corners.len() - 2);
+        let area = |t: &[usize; 3]| {
+            let [a, b, c] = t.map(|i| corners[i]);
+            0.5 * (b - a).cross(c - a).z
+        };
+        assert!(cut.triangles.iter().all(|t| area(t) >= 0.0));
+        let sum: f64 = cut.triangles.iter().map(area).sum();
+        let around = |points: &[DVec3]| {
+            let next = points.iter().cycle().skip(1);
+            let sides = points.iter().zip(next);
+            sides.map(|(p, q)| 0.5 * p.cross(*q).z).sum::<f64>()
+        };
+        let expected = around(&corners);
+        assert!((sum - expected).abs() < 1e-9 * expected, "{sum} {expected}");
+    }
 }

@@ -11,6 +11,12 @@ use super::regions::{Obstacle, Obstacles, Winding};
 /// Maximum number of full tests of all corners, beyond those after the corners have halved.
 const FULL_TESTS: usize = 64;
 
+/// The corners and sides that tests look at, for one polygon: at most this, and this for each corner. Then
+/// all tests are left out. Most polygons need a few for each corner; where very many long triangles
+/// cross each other, no cut is right.
+const MOST_VISITS: usize = 100_000_000;
+const MOST_VISITS_OF_CORNER: usize = 1000;
+
 /// What is known about a polygon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Shape {
@@ -58,6 +64,8 @@ pub(super) struct EarClipping {
     /// How often the remaining polygon winds around a point, if it may touch itself.
     winding: Winding,
     ears: BinaryHeap<Ear>,
+    /// The corners and sides that tests may still look at.
+    visits_left: usize,
     /// All remaining corners, the best to cut first, once there was no ear. Whether the corner is convex
     /// decides before all else.
     others: BinaryHeap<(bool, Ear)>,
@@ -102,6 +110,17 @@ impl Ord for Ear {
 }
 
 impl EarClipping {
+    /// Starts with a polygon of `corners` corners, which may be cut several times.
+    pub(super) fn start(&mut self, corners: usize) {
+        self.visits_left =
+            MOST_VISITS.saturating_add(corners.saturating_mul(MOST_VISITS_OF_CORNER));
+    }
+
+    /// Returns whether tests were left out, because they looked at too many corners.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.visits_left == 0
+    }
+
     /// Appends the `n − 2` triangles of the polygon with the corners `points` to `triangles`. A
     /// triangle has three corner numbers from 0 to `n − 1`, in the orientation of the polygon.
     /// `projected` are the corners in a plane, in which the polygon runs counter-clockwise.
@@ -226,7 +245,8 @@ impl EarClipping {
             0.0 if self.shape == Shape::Touching => self.kind_without_area(i),
             _ => return,
         };
-        if kind >= Kind::KnownDiagonal && (self.is_obstructed(i) || !self.is_inside(i)) {
+        let is_tested = kind >= Kind::KnownDiagonal && !self.is_exhausted();
+        if is_tested && (self.is_obstructed(i) || !self.is_inside(i)) {
             return;
         }
         let mut quality = self.quality(i);
@@ -319,7 +339,9 @@ impl EarClipping {
     fn is_obstructed(&mut self, i: usize) -> bool {
         let triangle = self.triangle(i);
         let mut obstacles = std::mem::take(&mut self.obstacles);
+        let mut visits = 0;
         let is_obstructed = obstacles.any(triangle.map(|j| self.projected[j]), |q| {
+            visits += 1;
             let q = q as usize;
             let is_gone = match self.shape {
                 Shape::Simple => self.removed[q] || self.is_convex(q),
@@ -334,6 +356,7 @@ impl EarClipping {
             }
         });
         self.obstacles = obstacles;
+        self.visits_left = self.visits_left.saturating_sub(visits);
         is_obstructed
     }
 
@@ -369,14 +392,16 @@ impl EarClipping {
 
     /// Returns whether the rest of the polygon winds once around the triangle at corner `i`, which
     /// no side enters.
-    fn is_inside(&self, i: usize) -> bool {
+    fn is_inside(&mut self, i: usize) -> bool {
         if self.shape == Shape::Simple {
             return true;
         }
         let [a, b, c] = self.triangle(i).map(|j| self.projected[j]);
         let at = (a + b + c) / 3.0;
-        self.winding
-            .around(at, &self.projected, &self.next, &self.removed)
-            == 1
+        let (times, visits) = self
+            .winding
+            .around(at, &self.projected, &self.next, &self.removed);
+        self.visits_left = self.visits_left.saturating_sub(visits);
+        times == 1
     }
 }

@@ -66,6 +66,7 @@ mod tests {
 
     fn has_cut(polygon: &[DVec2]) -> bool {
         let mut ears = EarClipping::default();
+        ears.start(polygon.len());
         [Shape::Simple, Shape::Touching]
             .into_iter()
             .any(|shape| super::has_cut(&mut ears, polygon, shape))

@@ -52,7 +52,7 @@ fn estimate(corners: &[DVec2], triangles: impl Iterator<Item = [DVec2; 3]>) -> f
     winding.reset(corners, &next, &removed);
     let others = |triangle: [DVec2; 3]| {
         let centre = triangle.iter().sum::<DVec2>() / 3.0;
-        let times = winding.around(centre, corners, &next, &removed);
+        let (times, _) = winding.around(centre, corners, &next, &removed);
         0.5 * (times - 1).max(0) as f64 * area(&triangle)
     };
     triangles.map(others).sum()

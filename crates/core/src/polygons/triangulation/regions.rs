@@ -235,21 +235,24 @@ impl Winding {
         }
     }
 
-    /// Returns how often the polygon winds around `at`.
+    /// Returns how often the polygon winds around `at`, and the number of sides that were looked at.
     pub(super) fn around(
         &self,
         at: DVec2,
         points: &[DVec2],
         next: &[u32],
         removed: &[bool],
-    ) -> isize {
-        self.around_in(1, at, &|row| {
+    ) -> (isize, usize) {
+        let mut visits = 0;
+        let times = self.around_in(1, at, &mut |row| {
+            visits += ROW;
             let sides = sides_of_row(row, points, next, removed);
             sides.map(|side| crossing(side, at)).sum()
-        })
+        });
+        (times, visits)
     }
 
-    fn around_in(&self, node: usize, at: DVec2, of_row: &impl Fn(usize) -> isize) -> isize {
+    fn around_in(&self, node: usize, at: DVec2, of_row: &mut impl FnMut(usize) -> isize) -> isize {
         let Some(Chain { extent, ends }) = self.nodes[node] else {
             return 0;
         };
@@ -379,7 +382,7 @@ mod tests {
                 let remaining = (0..n).filter(|&i| !removed[i]);
                 let sides = remaining.map(|i| [points[i], points[next[i] as usize]]);
                 let expected: isize = sides.map(|side| crossing(side, at)).sum();
-                prop_assert_eq!(winding.around(at, &points, &next, &removed), expected);
+                prop_assert_eq!(winding.around(at, &points, &next, &removed).0, expected);
             }
         }
     }
