@@ -439,4 +439,4 @@ fn ends_of(&(ends, _): &([u32; 2], Quadric)) -> [u32; 2] {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -220,3 +220,56 @@ impl Region {
 fn vertex_of(&(v, _): &(u32, [DVec3; 3])) -> u32 {
     v
 }
+
+#[cfg(test)]
+mod tests {
+    use sixfold_core::{MeshQuery, Representation};
+    use sixfold_half_edge::EditableHalfEdgeMesh;
+
+    use super::*;
+    use crate::rules::keeps_orientation;
+
+    /// Each sample that a collapse moves to another vertex is near a face of this one, and near none of the
+    /// vertex that it leaves.
+    #[test]
+    fn samples_stay_at_their_vertex_if_they_can() {
+        let grid = sixfold_shapes::triangle_grid(12, 12).expect("small");
+        let mut mesh = EditableHalfEdgeMesh::from_polygons(&grid).expect("a manifold");
+        let mut numbering = Numbering::new(&mesh).expect("triangles");
+        let limit = 1e-4;
+        let numbers = 0..row(numbering.len());
+        let positions = numbers
+            .map(|n| mesh.position(numbering.handle(n)))
+            .collect();
+        let mut deviation = Deviation::new(&mesh, &numbering, positions, limit).expect("a limit");
+        let mut moved = 0;
+        for ends in numbering.edges(&mesh) {
+            let Some(e) = numbering.edge(&mesh, ends) else {
+                continue;
+            };
+            let handles = ends.map(|end| numbering.handle(end));
+            let to = mesh.position(handles[0]);
+            if !deviation.allows(&mesh, &numbering, ends, to)
+                || !keeps_orientation(&mesh, handles, to.as_dvec3())
+            {
+                continue;
+            }
+            let Ok(kept) = mesh.collapse_edge(e, handles[0], to) else {
+                continue;
+            };
+            numbering.set_handle(ends[0], kept);
+            numbering.remove(ends[1]);
+            let is_near = |sample: u32, vertex: u32| {
+                let p = deviation.samples[sample as usize].as_dvec3();
+                let mut faces = mesh.vertex_faces(numbering.handle(vertex));
+                faces.any(|f| distance(p, corners(&mesh, f).map(|v| at(&mesh, v))) <= limit)
+            };
+            for &Move { sample, from, to } in &deviation.moves {
+                assert!(!is_near(sample, from) && is_near(sample, to));
+            }
+            moved += deviation.moves.len();
+            deviation.merge(ends);
+        }
+        assert!(moved > 0, "{moved}");
+    }
+}

@@ -101,8 +101,12 @@ pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
     if common != apexes.len() {
         return false;
     }
-    // Two ends of a manifold are in a tetrahedron only if both have three neighbours.
-    let may_be_tetrahedron = faces > 2 || at_a.len() == 3 && at_b.len() == 3;
+    // The apexes of a tetrahedron are adjacent.
+    let may_be_tetrahedron = match apexes[..] {
+        [] | [_] => false,
+        [one, other] => mesh.edge_between(one, other).is_some(),
+        _ => true,
+    };
     if may_be_tetrahedron && is_in_tetrahedron(mesh, [a, b], &apexes) {
         return false;
     }
@@ -159,4 +163,126 @@ fn is_curve<M: MeshEdit>(mesh: &M, a: M::Vertex, b: M::Vertex) -> bool {
 pub(crate) fn is_boundary<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
     mesh.vertex_edges(v)
         .any(|e| mesh.edge_faces(e).count() == 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold_core::{MeshQuery, PolygonMesh, Representation, VertexId};
+    use sixfold_indexed_face_set::EditableIndexedFaceSet;
+
+    use super::*;
+    use crate::decimation::tests::three_plates;
+
+    /// In a plane, faces keep their orientation if none is turned over or without area.
+    #[test]
+    fn faces_in_a_plane_keep_their_side() {
+        let grid = sixfold_shapes::triangle_grid(3, 3).expect("small");
+        let mesh = EditableIndexedFaceSet::from_polygons(&grid).expect("holds all");
+        for e in mesh.edges() {
+            let ends = mesh.edge_vertices(e);
+            for to in
+                (0..49).map(|i| DVec3::new(f64::from(i % 7) / 2.0, f64::from(i / 7) / 2.0, 0.0))
+            {
+                let faces = mesh
+                    .faces()
+                    .map(|f| mesh.face_vertices(f).collect::<Vec<_>>());
+                let others = faces.filter(|face| !ends.iter().all(|end| face.contains(end)));
+                let moved = |v| if ends.contains(&v) { to } else { at(&mesh, v) };
+                let mut areas = others.map(|face| {
+                    let [a, b, c] = [0, 1, 2].map(|i| moved(face[i]));
+                    (b - a).cross(c - a).z
+                });
+                let expected = areas.all(|area| area > 0.0);
+                assert_eq!(
+                    keeps_orientation(&mesh, ends, to),
+                    expected,
+                    "{ends:?} {to}"
+                );
+            }
+        }
+    }
+
+    /// Returns V − E + F, and the number of vertices where curves end.
+    fn topology(mesh: &EditableIndexedFaceSet) -> (isize, usize) {
+        let is_used = |&v: &VertexId| mesh.vertex_faces(v).next().is_some();
+        let vertices: Vec<VertexId> = mesh.vertices().filter(is_used).collect();
+        let counts = [vertices.len(), mesh.edge_count(), mesh.face_count()];
+        let [v, e, f] = counts.map(|count| count as isize);
+        let ends = vertices.iter().filter(|&&v| {
+            let faces = mesh.vertex_edges(v).map(|e| mesh.edge_faces(e).count());
+            let curves: Vec<usize> = faces.filter(|&faces| faces != 2).collect();
+            !curves.is_empty() && (curves.len() != 2 || curves[0] != curves[1])
+        });
+        (v - e + f, ends.count())
+    }
+
+    /// Checks which edges of a mesh meet the link condition, and that their collapse keeps the topology.
+    fn assert_meeting(
+        polygons: &PolygonMesh,
+        expected: impl Fn(&EditableIndexedFaceSet, [VertexId; 2]) -> bool,
+    ) {
+        let whole = EditableIndexedFaceSet::from_polygons(polygons).expect("holds all");
+        for e in whole.edges() {
+            let ends = whole.edge_vertices(e);
+            let meets = meets_link_condition(&whole, e);
+            assert_eq!(meets, expected(&whole, ends), "{ends:?}");
+            if meets {
+                let mut mesh = whole.clone();
+                let to = mesh.position(ends[0]);
+                mesh.collapse_edge(e, ends[0], to)
+                    .expect("it meets the link condition");
+                assert_eq!(topology(&mesh), topology(&whole), "{ends:?}");
+                let faces = whole.face_count() - mesh.face_count();
+                assert_eq!(faces, whole.edge_faces(e).count(), "{ends:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn curves_keep_their_ends_and_their_distance() {
+        for n in 1..5 {
+            let far = n as f32;
+            assert_meeting(&three_plates(n), |mesh, ends| {
+                let is_on_curve = ends.map(|v| {
+                    let p = mesh.position(v);
+                    let from_axis = p.truncate().length().round();
+                    [p.z, from_axis].iter().any(|&x| x == 0.0 || x == far)
+                });
+                let e = mesh.edge_between(ends[0], ends[1]).expect("its ends");
+                match mesh.edge_faces(e).count() {
+                    // The axis alone has no other vertex.
+                    3 => n > 1,
+                    2 => is_on_curve != [true; 2],
+                    _ => true,
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn tetrahedra_do_not_collapse() {
+        // Two tetrahedra with vertex 0 in common, and a triangle on an edge of each. Both triangles have
+        // vertex 7, and one edge in common, which joins curves.
+        let points = (0..8_u8).map(|i| {
+            let x = f32::from(i);
+            [x, x * x, x * x * x]
+        });
+        let faces = [
+            [0, 1, 2],
+            [1, 0, 3],
+            [0, 2, 3],
+            [1, 3, 2],
+            [0, 4, 5],
+            [4, 0, 6],
+            [0, 5, 6],
+            [4, 6, 5],
+            [4, 0, 7],
+            [0, 1, 7],
+        ];
+        let mesh = PolygonMesh::new(points, faces).expect("valid");
+        let [zero, last] = [0, 7].map(VertexId::new);
+        assert_meeting(&mesh, |_, ends| {
+            ends.contains(&last) && !ends.contains(&zero)
+        });
+    }
 }

@@ -135,6 +135,10 @@ mod tests {
                 row("corner-table", slow, Standing::Slower),
             ],
             samples: vec![
+                samples(
+                    "face-vertex",
+                    &[500.0, 700.0, 400.0, 900.0, 300.0, 800.0, 600.0],
+                ),
                 samples("half-edge", &times(1.0)),
                 samples("corner-table", &times(slow)),
             ],

@@ -175,7 +175,7 @@ fn watch_can_end_the_decimation() {
 }
 
 /// Three plates of `n × n` squares that meet in the z axis, at 120 degrees; `2·n²` triangles each.
-fn three_plates(n: u32) -> PolygonMesh {
+pub(crate) fn three_plates(n: u32) -> PolygonMesh {
     let mut points: Vec<Point> = (0..=n).map(|z| Point::new(0.0, 0.0, z as f32)).collect();
     let mut faces = Vec::new();
     for plate in 0..3 {
@@ -251,7 +251,12 @@ fn the_largest_distance_is_kept() {
             assert!(closest.distance() <= limit);
         }
         let new = Bvh::build(polygon_triangles(&out).expect("finite")).expect("small");
-        for &p in sphere.positions() {
+        // Vertices, the middles of edges and the centres of faces.
+        let points = sphere.faces().iter().flat_map(|(_, face)| {
+            let [a, b, c] = [0, 1, 2].map(|i| sphere.position(face[i]));
+            [a, a.midpoint(b), (a + b + c) / 3.0]
+        });
+        for p in points {
             let closest = new.closest_point(p).expect("not empty");
             assert!(closest.distance() <= limit * (1.0 + 1e-6));
         }

@@ -22,7 +22,8 @@ pub struct Crack {
     /// A tolerance of [`Step::Weld`](crate::Step::Weld) that closes the crack, in units of the
     /// coordinates.
     pub distance: f64,
-    /// The number of boundary edges that are no longer boundary edges after welding.
+    /// The number of boundary edges that are no longer boundary edges after welding. Pairs whose faces are on
+    /// different sides do not count.
     pub edges: usize,
     /// The number of edges with two faces that run in the same direction after welding, and were two
     /// boundary edges before. [`Step::Orient`](crate::Step::Orient) turns one of the faces.
@@ -394,15 +395,18 @@ mod tests {
         assert_eq!(after.inconsistent_edges, 0, "{crack:?}");
     }
 
-    #[test]
-    fn parallel_sheets_are_not_welded() {
-        let faces = sheet(20, [0.0; 3]);
-        let faces = faces.faces().iter().map(|(_, face)| face.iter().rev());
+    /// Returns a mesh whose faces are on the other side.
+    fn reversed(mesh: &PolygonMesh) -> PolygonMesh {
+        let faces = mesh.faces().iter().map(|(_, face)| face.iter().rev());
         let faces: Vec<Vec<u32>> = faces
             .map(|face| face.map(|&v| v.into()).collect())
             .collect();
-        let below = sheet(20, [0.0, 0.0, -0.01]);
-        let below = PolygonMesh::new(below.positions().iter().copied(), faces).expect("valid");
+        PolygonMesh::new(mesh.positions().iter().copied(), faces).expect("valid")
+    }
+
+    #[test]
+    fn parallel_sheets_are_not_welded() {
+        let below = reversed(&sheet(20, [0.0, 0.0, -0.01]));
         let sheets = [sheet(20, [0.0; 3]), below];
         let sheets = crate::orientation::tests::together(&sheets);
         let crack = assert_no_advice(&sheets);
@@ -431,6 +435,74 @@ mod tests {
         assert!(crack.is_safe(), "{crack:?}");
         assert_eq!((crack.edges, crack.same_direction), (40, 20));
         assert_true(&sheets, crack);
+    }
+
+    /// Returns pairs of unit squares beside each other, with these gaps.
+    fn pairs(gaps: impl Iterator<Item = f32>) -> Vec<PolygonMesh> {
+        let pair = |(gap, i): (f32, u8)| {
+            let y = 10.0 * f32::from(i);
+            [sheet(1, [0.0, y, 0.0]), sheet(1, [1.0 + gap, y, 0.0])]
+        };
+        gaps.zip(0..).flat_map(pair).collect()
+    }
+
+    fn crack_of(parts: &[PolygonMesh]) -> Option<Crack> {
+        diagnose(&crate::orientation::tests::together(parts), 0).crack
+    }
+
+    #[test]
+    fn a_safe_weld_is_preferred_if_it_closes_half_of_the_edges() {
+        // The wide gaps close only together with a small cube. The triangle is no reason against a weld: it
+        // has two corners at one place, and three edges less after it.
+        let corners = [[0.0, 5.0, 0.0], [-0.0, 5.0, 0.0], [1.0, 6.0, 0.0]];
+        let triangle = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
+        for (narrow, wide, is_safe) in [(1, 1, true), (3, 3, true), (1, 3, false)] {
+            let gaps = std::iter::repeat_n(0.0098, narrow);
+            let mut parts = pairs(gaps.chain(std::iter::repeat_n(0.049, wide)));
+            parts.extend([solid([0.04; 3], [50.0, 0.0, 0.0]), triangle.clone()]);
+            let crack = crack_of(&parts).expect("edges nearly meet");
+            let (pairs, distances) = match is_safe {
+                true => (narrow, 0.0098..0.01),
+                false => (narrow + wide, 0.049..0.051),
+            };
+            assert_eq!((crack.is_safe(), crack.edges), (is_safe, 2 * pairs + 3));
+            assert!(distances.contains(&crack.distance), "{crack:?}");
+        }
+    }
+
+    #[test]
+    fn wide_gaps_stay_open() {
+        // As a part of the edges.
+        let small = crate::orientation::tests::together(&pairs([0.5].into_iter()));
+        let points = small.positions().iter().map(|&p| 0.1 * p);
+        let small = PolygonMesh::from_faces(points.collect(), small.faces().clone());
+        assert_eq!(crack_of(&[small.expect("the same faces")]), None);
+        // Against the others.
+        let parts = pairs([0.001, 0.001, 0.001, 0.05].into_iter());
+        let crack = crack_of(&parts).expect("edges nearly meet");
+        assert_eq!((crack.is_safe(), crack.edges), (true, 6), "{crack:?}");
+        // All corners of the square in the middle are at gaps.
+        let row = [0.0, 1.01, 2.02].map(|x| sheet(1, [x, 0.0, 0.0]));
+        let crack = crack_of(&row).expect("edges nearly meet");
+        assert_eq!((crack.is_safe(), crack.edges), (true, 4), "{crack:?}");
+    }
+
+    #[test]
+    fn edges_that_do_not_close_are_not_cracks() {
+        // The faces are on different sides.
+        let flipped = |mut pair: Vec<PolygonMesh>, i: usize| {
+            pair[i] = reversed(&pair[i]);
+            pair
+        };
+        for i in [0, 1] {
+            let mut parts = flipped(pairs([0.01].into_iter()), i);
+            assert_eq!(crack_of(&parts), None);
+            parts.extend([sheet(1, [20.0, 0.0, 0.0]), sheet(1, [21.01, 0.0, 0.0])]);
+            let crack = crack_of(&parts).expect("edges nearly meet");
+            assert_eq!(crack.edges, 2);
+        }
+        let at_a_corner = [sheet(1, [0.0; 3]), sheet(1, [1.01, 1.01, 0.0])];
+        assert_eq!(crack_of(&at_a_corner), None);
     }
 
     #[test]

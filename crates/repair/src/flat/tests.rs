@@ -66,6 +66,101 @@ fn corners_at_one_position_are_merged() {
 }
 
 #[test]
+fn a_polygon_without_area_is_cut_if_its_diagonals_are_free() {
+    // The edge from 0 to 1 of a box, which has two more vertices on the bottom.
+    let mut points = split_box(&[]).positions().to_vec();
+    points.push(0.5 * (points[0] + points[8]));
+    let faces: [&[u32]; 8] = [
+        &[1, 8, 9, 0, 3, 2],
+        &[4, 5, 6, 7],
+        &[1, 2, 6, 5],
+        &[2, 3, 7, 6],
+        &[3, 0, 4, 7],
+        &[0, 9, 8, 1],
+        &[0, 1, 5],
+        &[0, 5, 4],
+    ];
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    let (new, _, left) = removed(&mesh);
+    let facts = Facts::from_polygons(&new);
+    assert!(facts.closed && facts.consistently_oriented == Some(true));
+    assert_eq!((facts.faces, facts.vertices, left), (9, 10, vec![]));
+    // Both diagonals of the first face are edges of others.
+    let points = [[0, 0], [1, 0], [2, 0], [3, 0], [0, 1], [3, 1]];
+    let points = points.map(|[x, y]: [i8; 2]| [f32::from(x), f32::from(y), 0.0]);
+    let faces: [&[u32]; 3] = [&[0, 1, 2, 3], &[0, 2, 4], &[1, 3, 5]];
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    let (new, _, left) = removed(&mesh);
+    let face = FaceId::new(0);
+    assert_eq!((new, left), (mesh, vec![Left::FlatFace { face }]));
+}
+
+#[test]
+fn a_slit_with_a_face_without_area_is_closed() {
+    // Vertices 1 and 2 are at one place, where the slit from vertex 0 ends.
+    let points = [[0, 0], [1, 0], [1, 0], [2, 0], [1, 1], [1, -1]];
+    let points = points.map(|[x, y]: [i8; 2]| [f32::from(x), f32::from(y), 0.0]);
+    let faces = [[1, 2, 3], [0, 1, 4], [1, 3, 4], [0, 5, 2], [2, 5, 3]];
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    let (new, counts, left) = removed(&mesh);
+    let facts = Facts::from_polygons(&new);
+    assert_eq!((facts.faces, facts.boundary_edges), (4, 4));
+    assert_eq!((counts.vertices_merged, left), (1, vec![]));
+}
+
+#[test]
+fn three_sheets_meet_in_the_edges_of_a_face_without_area() {
+    let points = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [2, 0, 0],
+        [1, 1, 0],
+        [1, -1, 0],
+        [1, 0, 1],
+    ];
+    let points = points.map(|p: [i8; 3]| p.map(f32::from));
+    let faces = [[0, 1, 2], [2, 0, 3], [0, 2, 4], [1, 0, 5], [2, 1, 5]];
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    let (new, _, left) = removed(&mesh);
+    let facts = Facts::from_polygons(&new);
+    assert_eq!((facts.faces, facts.non_manifold_edges), (6, 2));
+    assert_eq!(left, []);
+    // A fourth sheet would make an edge of four faces.
+    let four = [&faces[..], &[[0, 1, 6]]].concat();
+    let points = [&points[..], &[[1.0, 0.0, -1.0]]].concat();
+    let mesh = PolygonMesh::new(points, four).expect("valid");
+    let (new, _, left) = removed(&mesh);
+    let face = FaceId::new(0);
+    assert_eq!((new, left), (mesh, vec![Left::FlatFace { face }]));
+}
+
+#[test]
+fn faces_without_area_on_each_other() {
+    let points = [[0, 0], [1, 0], [2, 0], [3, 0], [1, 1], [1, -1]];
+    let points = points.map(|[x, y]: [i8; 2]| [f32::from(x), f32::from(y), 0.0]);
+    // Both have the longest edge, and others on the shorter ones.
+    let faces = [
+        [0, 1, 3],
+        [3, 2, 0],
+        [1, 0, 4],
+        [3, 1, 4],
+        [0, 2, 5],
+        [2, 3, 5],
+    ];
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    let (new, _, left) = removed(&mesh);
+    assert_eq!(
+        (Facts::from_polygons(&new).boundary_edges, left),
+        (4, vec![])
+    );
+    // Without these two, the edges of the others would open.
+    let faces = [[0, 1, 2], [2, 1, 0], [0, 1, 4], [1, 2, 5]];
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    let (new, _, left) = removed(&mesh);
+    assert_eq!((new, left.len()), (mesh, 2));
+}
+
+#[test]
 fn a_face_at_the_boundary_remains_if_an_edge_would_open() {
     let points = [
         [0.0, 0.0, 0.0],

@@ -24,7 +24,8 @@ fn squares(side: f32) -> (PolygonMesh, PolygonMesh) {
 #[test]
 fn parallel_squares_have_their_distance_everywhere() {
     let distance = mesh_distance(&square(0.0), &square(0.75), Sampling::default()).expect("faces");
-    for side in [distance.forward, distance.backward] {
+    for (side, z) in [(distance.forward, 0.0), (distance.backward, 0.75)] {
+        assert_eq!(side.farthest, DVec3::new(-1.0, -1.0, z), "the first vertex");
         assert_eq!(
             (side.mean, side.root_mean_square, side.largest),
             (0.75, 0.75, 0.75)
@@ -84,13 +85,28 @@ fn a_mesh_has_no_distance_to_itself() {
     let mesh = PolygonMesh::from_faces(moved.collect(), mesh.faces().clone()).expect("valid");
     let distance = mesh_distance(&mesh, &mesh, Sampling::default()).expect("faces");
     assert_eq!(distance.largest(), 0.0);
-    // Also if the faces are others of the same surface.
+    // Also if the faces are others of the same surface, in any unit.
     let faces = mesh.faces().iter();
     let faces = faces.map(|(_, face)| face.iter().rev().map(|v| v.row()).collect());
     let faces: Vec<Vec<u32>> = faces.collect();
-    let reversed = PolygonMesh::new(mesh.positions().iter().copied(), faces).expect("valid");
-    let distance = mesh_distance(&mesh, &reversed, Sampling::default()).expect("faces");
-    assert_eq!(distance.largest(), 0.0);
+    for unit in [1e-3, 1.0, 1e3] {
+        let points: Vec<Point> = mesh.positions().iter().map(|&p| unit * p).collect();
+        let reversed = PolygonMesh::new(points.iter().copied(), &faces).expect("valid");
+        let mesh = PolygonMesh::from_faces(points, mesh.faces().clone()).expect("valid");
+        let distance = mesh_distance(&mesh, &reversed, Sampling::default()).expect("faces");
+        assert_eq!(distance.largest(), 0.0);
+    }
+    // Not if they are other surfaces over the same vertices.
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 1.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 1.0],
+    ];
+    let over = |faces: [[u32; 3]; 2]| PolygonMesh::new(corners, faces).expect("valid");
+    let [one, other] = [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]].map(over);
+    let distance = mesh_distance(&one, &other, Sampling::default()).expect("faces");
+    assert!(distance.mean() > 0.1);
     // A thin triangle, and a surface that is a little apart.
     let thin = |height: f32| {
         let points = [

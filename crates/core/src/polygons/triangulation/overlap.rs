@@ -164,20 +164,42 @@ fn area(polygon: &[DVec2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns a polygon that runs around its first corner several times, and its triangles at this corner.
-    /// Each time, it is as far away as `radius` returns.
-    fn coil(
-        corners: usize,
-        turns: usize,
-        radius: impl Fn(usize) -> f64,
-    ) -> (Vec<DVec2>, Vec<[usize; 3]>) {
-        let around = (0..=corners * turns).map(|i| {
-            let angle = i as f64 * std::f64::consts::TAU / corners as f64;
-            radius(i / corners) * DVec2::from_angle(angle)
-        });
-        let points: Vec<DVec2> = std::iter::once(DVec2::ZERO).chain(around).collect();
-        let triangles = (1..=corners * turns).map(|i| [0, i, i + 1]);
-        (points, triangles.collect())
+    /// Returns a polygon that runs around its first corner as often as there are radii, and its triangles at
+    /// this corner. It starts in the direction `start`.
+    fn coil(corners: usize, radii: &[f64], start: f64) -> (Vec<DVec2>, Vec<[usize; 3]>) {
+        let (mut points, mut triangles) = (vec![DVec2::ZERO], Vec::new());
+        for &radius in radii {
+            for i in 0..=corners {
+                let angle = start + i as f64 * std::f64::consts::TAU / corners as f64;
+                if i > 0 {
+                    triangles.push([0, points.len() - 1, points.len()]);
+                }
+                points.push(radius * DVec2::from_angle(angle));
+            }
+        }
+        (points, triangles)
+    }
+
+    #[test]
+    fn the_overlap_of_few_triangles_is_exact() {
+        for corners in [3, 4, 5, 20] {
+            for radii in [&[2.0][..], &[2.0, 1.0], &[1.0, 1.5, 0.5, 1.5]] {
+                for quarter in 0..4 {
+                    let start = 0.1 + f64::from(quarter) * std::f64::consts::FRAC_PI_2;
+                    let (points, triangles) = coil(corners, radii, start);
+                    // Of two turns, the smaller one overlaps.
+                    let square = |i: usize| radii[i] * radii[i];
+                    let pairs = (0..radii.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+                    let both: f64 = pairs.map(|(i, j)| square(i).min(square(j))).sum();
+                    let expected = both / (0..radii.len()).map(square).sum::<f64>();
+                    let found = overlapping_part(&points, &triangles);
+                    assert!(
+                        (found - expected).abs() < 1e-9,
+                        "{corners} {radii:?} {found}"
+                    );
+                }
+            }
+        }
     }
 
     /// With many corners, not all pairs of triangles are looked at.
@@ -185,7 +207,7 @@ mod tests {
     fn the_overlap_of_many_triangles_is_found_or_estimated() {
         for (corners, is_exact) in [(20, true), (3000, false)] {
             for turns in 1..=4 {
-                let (points, triangles) = coil(corners, turns, |_| 1.0);
+                let (points, triangles) = coil(corners, &vec![1.0; turns], 0.0);
                 let of_corners = triangles.iter().map(|t| t.map(|i| points[i]));
                 assert_eq!(overlap(of_corners.collect()).1, is_exact);
                 // Each point is in as many triangles as there are turns.
@@ -194,5 +216,29 @@ mod tests {
                 assert!((found - expected).abs() < 1e-9, "{found} {expected}");
             }
         }
+    }
+
+    #[test]
+    fn triangles_of_convex_polygons_do_not_overlap() {
+        for n in [5_u8, 7, 20] {
+            for (step, expected) in [(1, false), (2, n % 2 == 1)] {
+                let corners = (0..n).map(|i| {
+                    let angle = f64::from(i * step) * std::f64::consts::TAU / f64::from(n);
+                    DVec2::from_angle(angle)
+                });
+                let mut corners: Vec<DVec2> = corners.collect();
+                if n % step == 0 {
+                    corners.truncate(usize::from(n / step));
+                }
+                for _ in 0..n {
+                    corners.rotate_left(1);
+                    assert_eq!(may_overlap(&corners), expected, "{n} {step}");
+                }
+            }
+        }
+        // A quad, and a polygon with a corner that turns right.
+        let quad = [[0.0, 0.0], [2.0, 1.0], [0.0, 4.0], [0.5, 1.0]].map(DVec2::from_array);
+        assert!(!may_overlap(&quad));
+        assert!(may_overlap(&[&quad[..], &[DVec2::new(0.2, 0.5)]].concat()));
     }
 }

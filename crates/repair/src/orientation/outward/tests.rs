@@ -111,6 +111,40 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
+    #[test]
+    fn each_tetrahedron_that_touches_another_is_in_a_contact(
+        tetrahedra in collection::vec(prop::array::uniform4(prop::array::uniform3(0..8_u8)), 2..9),
+    ) {
+        let tetrahedra: Vec<PolygonMesh> = tetrahedra
+            .into_iter()
+            .map(|corners| {
+                let points = corners.map(|corner| corner.map(f32::from));
+                let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+                PolygonMesh::new(points, faces).expect("valid")
+            })
+            .collect();
+        let mesh = together(&tetrahedra);
+        let incidence = Incidence::new(mesh.vertex_count(), mesh.faces(), |_| true);
+        let agreement = Agreement::of_consistent(mesh.faces(), &incidence);
+        let index = index(&mesh, &agreement, &vec![true; tetrahedra.len()]).expect("finite");
+        let mut found = vec![false; tetrahedra.len()];
+        for (one, other) in contacts(&index, &agreement, |_| true) {
+            (found[one], found[other]) = (true, true);
+        }
+        let of = |triangle: &FaceTriangle<FaceId>| agreement.component(triangle.face);
+        let mut expected = vec![false; tetrahedra.len()];
+        for one in index.items() {
+            let mut others = index.items().iter().filter(|other| of(other) != of(one));
+            expected[of(one)] |=
+                others.any(|other| triangles_touch(one.corners_f64(), other.corners_f64()));
+        }
+        prop_assert_eq!(found, expected);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     /// The first hit of each ray says as much as all of its hits: how many shells are around one, or that
     /// one of them crosses another.
     #[test]
