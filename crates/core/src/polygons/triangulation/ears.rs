@@ -14,8 +14,8 @@ const FULL_TESTS: usize = 64;
 /// The corners and sides that tests look at, for one polygon: at most this, and this for each corner. Then
 /// all tests are left out. Most polygons need a few for each corner; where very many long triangles
 /// cross each other, no cut is right.
-const MOST_VISITS: usize = 100_000_000;
-const MOST_VISITS_OF_CORNER: usize = 1000;
+const MOST_VISITS: usize = 50_000_000;
+const MOST_VISITS_OF_CORNER: usize = 300;
 
 /// What is known about a polygon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
