@@ -128,7 +128,7 @@ impl IgnoredKind {
     /// Returns what the kind means for the mesh, if its name does not say it.
     const fn remark(self) -> &'static str {
         match self {
-            Self::CutFaces => ": its triangles have the same area",
+            Self::CutFaces => ": the triangles have the same area",
             Self::MissingEnds => ": the file may be cut off",
             Self::SmallFacetCount => ": more facets follow than it says, and all are read",
             Self::Skins => ": vertices stay where they are stored, because joints are not read",

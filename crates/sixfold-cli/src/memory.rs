@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use sixfold_results::{Audit, BackendAudit, Policy};
-use sixfold_study::{Backend, LONG_RINGS, MAX_SCANNED_FACES, Settings, audit, count_allocations};
+use sixfold_study::{Backend, CROWDED, MAX_SCANNED_FACES, Settings, audit, count_allocations};
 
 use crate::AllocatorCounters;
 use crate::arguments::Memory;
@@ -192,14 +192,16 @@ fn operations_legend(audit: &Audit) -> Vec<String> {
     let scans = match scanning.is_empty() {
         true => String::new(),
         false => format!(
-            ", or it scans all faces for each element ({}), and the mesh has more than {} faces",
+            ", or it scans all faces for each element ({}), and the mesh has more than {} faces or {} \
+             corners",
             scanning.join(", "),
-            grouped(MAX_SCANNED_FACES)
+            grouped(MAX_SCANNED_FACES),
+            grouped(4 * MAX_SCANNED_FACES)
         ),
     };
     let mut operations = audit.backends.iter().flat_map(|entry| &entry.operations);
-    let rings = match operations.any(|o| o.reason.as_deref() == Some(LONG_RINGS)) {
-        true => format!(", or {LONG_RINGS}"),
+    let rings = match operations.any(|o| o.reason.as_deref() == Some(CROWDED)) {
+        true => format!(", or {CROWDED}"),
         false => String::new(),
     };
     vec![

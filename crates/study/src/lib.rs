@@ -49,7 +49,7 @@ pub use inspect::{Inspection, StudyMesh, inspect, inspect_diagnosed, sha256_of};
 pub use labs::growth::{
     GrowthError, GrowthSettings, SCALABLE_SHAPES, ScalableShape, growth, growth_bytes, growth_plan,
 };
-pub use labs::memory::{LONG_RINGS, audit, count_allocations, none_holds};
+pub use labs::memory::{CROWDED, audit, count_allocations, none_holds};
 pub use labs::neighbours::{NeighboursError, NeighboursSettings, neighbour_indices, neighbours};
 pub use labs::orders::{DEFAULT_OPERATIONS, orders, orders_bytes};
 pub use labs::pick::{

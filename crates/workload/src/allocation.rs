@@ -38,19 +38,18 @@ pub enum NotCounted {
     /// The operation would take too long, because the structure scans all faces for each element
     /// and the mesh is large.
     Scans,
-    /// The operation would take too long, because an edit visits the faces around its vertices, and
-    /// some vertices have very many.
-    LongRings,
+    /// The operation would take too long, because it visits all neighbours of elements, and some
+    /// elements have very many.
+    Crowded,
 }
 
 /// Size limit for meshes, in faces. Operations that scan all faces for each element are not run on
-/// larger meshes than this limit.
+/// larger meshes than this limit, or if the faces have more than four times as many corners.
 pub const MAX_SCANNED_FACES: usize = 2_000;
 
-/// Limit for the work of edits on meshes with few edges: [`ring_work`] of larger meshes may be as large as
-/// this for each edge.
-const MAX_RING_WORK: usize = 20_000_000;
-const MAX_RING_WORK_PER_EDGE: usize = 100;
+/// Limits for [`visits`]: of a mesh with few edges, and for each edge of a larger mesh.
+const MAX_VISITS: usize = 20_000_000;
+const MAX_VISITS_PER_EDGE: usize = 100;
 
 /// A clock that returns allocated bytes instead of time. Set-up is excluded.
 struct ByteClock<'a>(&'a dyn AllocationCounter);
@@ -61,17 +60,19 @@ impl Clock for ByteClock<'_> {
     }
 }
 
-/// Returns the number of faces that are visited if the faces around both ends of each side are: the sum
-/// of the squares of the numbers of faces at the vertices.
-fn ring_work(polygons: &PolygonMesh) -> usize {
+/// Returns the number of visits if each corner visits the other corners of its face, and the other faces at
+/// its vertex.
+fn visits(polygons: &PolygonMesh) -> usize {
     let mut faces = vec![0_usize; polygons.vertex_count()];
     for v in polygons.faces().corners() {
         faces[v.index()] += 1;
     }
-    faces
+    let degrees = polygons.faces().iter().map(|(_, face)| face.len());
+    let squares = faces
         .into_iter()
-        .map(|n| n.saturating_mul(n))
-        .fold(0, usize::saturating_add)
+        .chain(degrees)
+        .map(|n| n.saturating_mul(n));
+    squares.fold(0, usize::saturating_add)
 }
 
 impl Backend {
@@ -98,15 +99,17 @@ impl Backend {
         edges: usize,
         counter: &dyn AllocationCounter,
     ) -> Result<Allocated, NotCounted> {
+        let limit = MAX_VISITS.max(MAX_VISITS_PER_EDGE.saturating_mul(edges));
+        if operation != Operation::Build && visits(polygons) > limit {
+            return Err(NotCounted::Crowded);
+        }
         let method = operation.subdivision_job().map(|job| job.way.method());
         let is_native = method == Some(Method::Native);
         let scans = operation.scans(&self.info.costs).contains(&true);
-        if scans && !is_native && polygons.face_count() > MAX_SCANNED_FACES {
+        let is_large = polygons.face_count() > MAX_SCANNED_FACES
+            || polygons.corner_count() > 4 * MAX_SCANNED_FACES;
+        if scans && !is_native && is_large {
             return Err(NotCounted::Scans);
-        }
-        let limit = MAX_RING_WORK.max(MAX_RING_WORK_PER_EDGE.saturating_mul(edges));
-        if matches!(operation, Operation::EditPass(_)) && ring_work(polygons) > limit {
-            return Err(NotCounted::LongRings);
         }
         let bytes = self.allocated_by_run(operation, polygons, counter);
         let counts = polygons.counts(edges);

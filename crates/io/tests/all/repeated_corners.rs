@@ -304,7 +304,7 @@ fn polygons_that_touch_themselves_in_a_vertex_are_cut() {
             .position(|line| line.starts_with('f'))
             .expect("a face");
         let message = format!(
-            "cut 1 face that names a vertex twice (line {line}): its triangles have the same area"
+            "cut 1 face that names a vertex twice (line {line}): the triangles have the same area"
         );
         assert_eq!(mesh.notices[0].to_string(), message);
         let (polygons, left_out, places) = mesh.into_polygons_with_places();

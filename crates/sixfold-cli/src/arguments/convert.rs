@@ -11,7 +11,8 @@ const EXAMPLES: &str = "Examples:
 The output has the vertices, the faces and the sharp edges of the input, as far as its format holds
 them. Notes name what is left out.
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted, nothing written.";
+Exit codes: 0 success; 1 the result has no faces; 2 wrong usage or unusable input; 4 interrupted,
+nothing written.";
 
 /// Write a mesh in another format.
 ///

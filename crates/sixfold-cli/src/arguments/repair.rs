@@ -54,7 +54,8 @@ pub(crate) struct ChosenSteps {
 // The options of the steps.
 #[derive(Debug, Args)]
 struct StepOptions {
-    /// Merge vertices within 0.01, or 0.01% of the diagonal; default 0
+    /// Merge vertices within a distance: a length, such as 0.01, or a part of the diagonal of the
+    /// box, such as 0.01% [without a distance: 0]
     #[arg(long, value_name = "DISTANCE", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = tolerance)]
     weld: Option<Tolerance>,
     /// How --weld finds vertices: grid or kd-tree

@@ -11,7 +11,7 @@ const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj --weights cotangent --iterations 50 -o smooth.obj
   sixfold smooth scan.obj --step 0.33 --step-back=-0.34 -o smooth.obj    keeps the volume
 
-Exit codes: 0 success; 1 with --check, the shape has changed; 2 wrong usage or unusable input;
+Exit codes: 0 success; 1 the result has no faces, or with --check, the shape has changed; 2 wrong usage or unusable input;
 3 the weights or the backend do not support the mesh; 4 interrupted, nothing written.";
 
 /// Move vertices towards their neighbours.
@@ -54,8 +54,8 @@ pub(crate) struct Smooth {
 const DUAL_EXAMPLES: &str = "Examples:
   sixfold dual icosahedron.obj -o dodecahedron.obj
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh has no dual, or the backend
-cannot hold it; 4 interrupted, nothing written.";
+Exit codes: 0 success; 1 the result has no faces; 2 wrong usage or unusable input; 3 the mesh has no
+dual, or the backend cannot hold it; 4 interrupted, nothing written.";
 
 /// Turn each face into a vertex, and each vertex into a face.
 ///
@@ -76,7 +76,8 @@ const TRIANGULATE_EXAMPLES: &str = "Examples:
   sixfold triangulate plan.obj -o triangles.obj
   sixfold triangulate scan.obj --orient outward -o consistent.obj
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted, nothing written.";
+Exit codes: 0 success; 1 the result has no faces; 2 wrong usage or unusable input; 4 interrupted,
+nothing written.";
 
 /// Cut polygons into triangles.
 ///

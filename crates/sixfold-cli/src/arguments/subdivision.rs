@@ -21,7 +21,8 @@ decreases by one per level. A sharpness of 10 or more never decreases. Creases i
 (`t crease`, `t corner`) are also used. `sixfold schemes` lists the methods of each backend.
 
 --select refines only some faces, and requires --scheme midpoint:
-  faces:FILE              the faces that a file lists (numbers from 0)
+  faces:FILE              the faces that a file lists, by their numbers in the
+                          mesh file, from 0
   box:X0,Y0,Z0,X1,Y1,Z1   the faces that touch a box, in coordinates of the file
   angle:DEGREES           the faces at an edge that bends by more than an angle
 Faces next to the refined faces are cut in half, so that the mesh has no gaps.

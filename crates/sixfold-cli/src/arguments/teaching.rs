@@ -73,8 +73,9 @@ const TRACE_EXAMPLES: &str = "Examples:
   sixfold trace --walk \"h = leaving(v3); repeat { yield target(h); h = next(twin(h)) }\"
                 --expect \"vertex_vertices v3\"          a walk of your own
 
-An element is named by the numbers of the mesh file, from 0: v3 is a vertex, v0-v1 is the edge
-between two vertices, f2 is a face. The relations (also VV, VE and so on) are vertex_vertices,
+An element is named by the numbers that `sixfold inspect` shows: those of the mesh file, from 0,
+without the faces that are left out. v3 is a vertex, v0-v1 is the edge between two vertices, f2 is a
+face. The relations (also VV, VE and so on) are vertex_vertices,
 vertex_edges, vertex_faces, edge_vertices, edge_edges, edge_faces, face_vertices, face_edges and
 face_faces. `sixfold tables` shows the rows that a query reads.
 

@@ -59,14 +59,13 @@ pub fn audit(
     audit
 }
 
-/// The reason why edits of a mesh are not run, if some of its vertices have very many faces.
-pub const LONG_RINGS: &str =
-    "edits visit the faces around a vertex, and some vertices have very many";
+/// The reason why an operation is not run on a mesh of which some elements have very many neighbours.
+pub const CROWDED: &str = "it visits all neighbours of elements, and some elements have very many";
 
 /// Counts the bytes that operations allocate, and adds the counts to `audit`. Every operation that
 /// allocates is run on every backend that holds the mesh. An operation that scans all faces for
-/// each element is not run on a large mesh, and edits are not run on a mesh with vertices of very many
-/// faces. `audit` must be the result of [`audit()`] for
+/// each element is not run on a large mesh, and no operation but the build on a mesh of which some elements
+/// have very many neighbours. `audit` must be the result of [`audit()`] for
 /// `backends` and `study_mesh`.
 ///
 /// A run is repeated until two runs allocate the same smallest number of bytes, but at most eight
@@ -114,9 +113,10 @@ fn operation_bytes(
         NotCounted::Refused(reason) => reason,
         NotCounted::Scans => format!(
             "it scans all faces for each element, and the mesh has more than \
-             {MAX_SCANNED_FACES} faces"
+             {MAX_SCANNED_FACES} faces or {} corners",
+            4 * MAX_SCANNED_FACES
         ),
-        NotCounted::LongRings => LONG_RINGS.to_owned(),
+        NotCounted::Crowded => CROWDED.to_owned(),
     });
     let figures = counted.as_ref().ok();
     OperationBytes {
