@@ -156,7 +156,8 @@ pub fn decimate<M: MeshEdit>(
 }
 
 /// Decimates like [`decimate`], and calls `watch` with the current number of faces after every 1024
-/// edges that were collapsed or refused, and earlier if these have ends with very many edges. If `watch` returns `ControlFlow::Break`, the decimation ends.
+/// edges that were collapsed or refused, and earlier if these have ends with very many edges. If `watch`
+/// returns `ControlFlow::Break`, the decimation ends.
 ///
 /// # Errors
 ///
