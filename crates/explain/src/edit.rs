@@ -139,7 +139,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     /// # Errors
     ///
     /// Returns an error if an element is missing, or if the edit makes more than [`MAX_ACCESSES`] reads and
-    /// writes. The edit is made in the second case.
+    /// writes. The mesh is then unchanged.
     pub(crate) fn run_shown(
         &mut self,
         command: &EditByName,
@@ -150,7 +150,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         let (refusal, record, cut) = self.run_recorded(&edit, MAX_ACCESSES + 1);
         let accesses = self.probe.take();
         if accesses.len() > MAX_ACCESSES {
-            self.follow(&record, &cut);
+            self.mesh = before;
             return Err(ExplainError::TooManyAccesses {
                 structure: self.structure,
                 edit: command.to_string(),
