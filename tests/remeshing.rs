@@ -102,6 +102,27 @@ fn decimation_is_the_same_on_all() {
     }
 }
 
+/// The tips of a double cone have very many edges.
+#[test]
+fn decimation_at_hubs_is_the_same_on_all() {
+    let n = 300;
+    let rim = (0..n).map(|i| {
+        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos();
+        Point::new(cos as f32, sin as f32, 0.1 * (i % 3) as f32)
+    });
+    let sides = (0..n).map(|i| [i, (i + 1) % n]);
+    let faces = sides.flat_map(|[a, b]| [[a, b, n], [b, a, n + 1]]);
+    let points = rim.chain([Point::Z, -Point::Z]);
+    let cones = PolygonMesh::new(points, faces).expect("two cones");
+    for ratio in [0.6, 0.1, 0.0] {
+        let operator = Decimation {
+            target: Target::Ratio(ratio),
+            ..Decimation::default()
+        };
+        compare_structures(&operator, &cones, &format!("{operator:?}"));
+    }
+}
+
 #[test]
 fn remeshing_is_the_same_on_all() {
     let lengths = [0.2, 0.25, 1.6, 0.9];

@@ -121,7 +121,9 @@ impl BuiltMesh {
     ///
     /// Returns [`ExplainError::NoSuchElement`] if the edit names an element that does not exist,
     /// [`ExplainError::BadEdit`] if it lacks one, and [`ExplainError::NoEdits`] if the structure was not
-    /// given with its edits ([`Structure::with_edits`](crate::Structure::with_edits)).
+    /// given with its edits ([`Structure::with_edits`](crate::Structure::with_edits)). Returns
+    /// [`ExplainError::TooManyAccesses`] if the edit makes more than 8 million reads and writes; the mesh is
+    /// then unchanged.
     pub fn edit(&mut self, edit: &EditByName) -> Result<EditTrace, ExplainError> {
         self.edited()?.edit(edit, usize::MAX)
     }

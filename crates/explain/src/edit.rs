@@ -14,6 +14,9 @@ use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::trace::{retain_named, stored_fields};
 
+/// Maximum number of reads and writes of an edit that is shown. They take about 320 MB.
+const MAX_ACCESSES: usize = 8_000_000;
+
 /// One edit on one structure: the rows that it reads, writes, makes and deletes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct EditTrace {
@@ -112,7 +115,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     /// Runs an edit. Returns the rule that it breaks, if the structure refuses it.
     pub(crate) fn run(&mut self, command: &EditByName) -> Result<Option<String>, ExplainError> {
         let edit = self.found(command)?;
-        let (refusal, record, cut) = self.run_recorded(&edit);
+        let (refusal, record, cut) = self.run_recorded(&edit, 0);
         self.follow(&record, &cut);
         self.probe.take();
         Ok(refusal)
@@ -123,13 +126,20 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         record: &EditRecord<P>,
         cut: &FacesBefore,
     ) -> NameChanges<P::Vertex, P::Face> {
-        let changes = self.names.follow(&self.mesh, record, cut);
+        let changes = self
+            .probe
+            .pause(|| self.names.follow(&self.mesh, record, cut));
         self.has_moved |= !changes.moved_vertices.is_empty() || !changes.moved_faces.is_empty();
         changes
     }
 
     /// Runs an edit, and returns what it does, with at most `most` entries in each list. O(size of the mesh),
     /// because all rows are compared.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an element is missing, or if the edit makes more than [`MAX_ACCESSES`] reads and
+    /// writes. The mesh is then unchanged.
     pub(crate) fn run_shown(
         &mut self,
         command: &EditByName,
@@ -137,8 +147,16 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     ) -> Result<EditTrace, ExplainError> {
         let edit = self.found(command)?;
         let (before, elements) = (self.mesh.clone(), self.elements());
-        let (refusal, record, cut) = self.run_recorded(&edit);
+        let (refusal, record, cut) = self.run_recorded(&edit, MAX_ACCESSES + 1);
         let accesses = self.probe.take();
+        if accesses.len() > MAX_ACCESSES {
+            self.mesh = before;
+            return Err(ExplainError::TooManyAccesses {
+                structure: self.structure,
+                edit: command.to_string(),
+                limit: MAX_ACCESSES,
+            });
+        }
         let mut changes = Changed::new(most);
         self.probe
             .pause(|| changes.compare(&before, &self.mesh, &accesses));
@@ -192,14 +210,22 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         edit.map_err(|name| self.missing(name))
     }
 
-    /// Runs an edit, whose reads and writes the probe then has. Returns the rule that it breaks, if the
+    /// Runs an edit, whose first `limit` reads and writes the probe then has. Returns the rule that it breaks, if the
     /// structure refuses it, the changes, and the faces before.
-    fn run_recorded(&mut self, edit: &EditOf<P>) -> (Option<String>, EditRecord<P>, FacesBefore) {
-        let cut = self.names.faces_before(&self.mesh, edit);
+    fn run_recorded(
+        &mut self,
+        edit: &EditOf<P>,
+        limit: usize,
+    ) -> (Option<String>, EditRecord<P>, FacesBefore) {
+        let cut = self
+            .probe
+            .pause(|| self.names.faces_before(&self.mesh, edit));
         let mut record = EditRecord::new();
         // The reads that looked up the arguments are forgotten.
         self.probe.take();
-        let refusal = edit.apply(&mut self.mesh, &mut record).err();
+        let refusal = self
+            .probe
+            .limit(limit, || edit.apply(&mut self.mesh, &mut record).err());
         let refusal = refusal.map(|refusal| self.probe.pause(|| self.in_names(refusal)));
         (refusal, record, cut)
     }

@@ -41,6 +41,16 @@ pub enum ExplainError {
         edit: String,
         reason: String,
     },
+    /// The edit reads and writes too many rows.
+    #[error(
+        "{structure} makes more than {limit} reads and writes for {edit}: choose a smaller mesh, or an \
+         element with fewer faces"
+    )]
+    TooManyAccesses {
+        structure: &'static str,
+        edit: String,
+        limit: usize,
+    },
     /// A text that is not an edit.
     #[error(transparent)]
     BadEdit(#[from] EditTextError),

@@ -91,6 +91,13 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
         self.faces_around(f)
     }
 
+    /// Looks at the faces of the end with fewer faces.
+    #[inline]
+    fn edge_between(&self, a: VertexId, b: VertexId) -> Option<Pair<VertexId>> {
+        let e = Pair::new(a, b);
+        (a != b && self.edge_faces(e).next().is_some()).then_some(e)
+    }
+
     #[inline]
     fn contains_edge(&self, e: Pair<VertexId>) -> bool {
         let [a, b] = e.ends();

@@ -11,14 +11,21 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
-use crate::rules::{keeps_orientation, may_collapse};
+use crate::rules::{Curve, HUB, keeps_orientation, keeps_topology};
 
 /// Weight of a plane through a boundary edge or an edge with three or more faces, relative to the plane
 /// of a face.
 const BOUNDARY_WEIGHT: f64 = 100.0;
 
-/// Number of collapses between two calls of `watch`.
+/// Number of tried edges between two calls of `watch`. An edge at a hub counts as several.
 const WATCH_INTERVAL: usize = 1024;
+
+/// Number of edges at hubs that may be visited, for each edge of the mesh, until the other edges have
+/// been tried.
+const HUB_VISITS: usize = 256;
+
+/// The edges of a hub are tried again after this part of them has been collapsed.
+const HUB_PART: u32 = 16;
 
 /// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,6 +130,9 @@ pub struct Decimated {
 /// ([`meets_link_condition`](crate::meets_link_condition)), or if the surface would deviate by more
 /// than the largest distance. A refused collapse is tried again after an end of the edge has changed.
 ///
+/// A vertex with more than 64 edges is a hub. The edges of a hub are tried again only after a sixteenth
+/// of them has been collapsed. They are tried after all other edges if they took very long already.
+///
 /// Errors are rounded into buckets, so that the errors in one bucket differ by at most an eighth. A
 /// round collapses all edges of the bucket with the lowest errors, in the order of their vertex
 /// numbers.
@@ -146,7 +156,8 @@ pub fn decimate<M: MeshEdit>(
 }
 
 /// Decimates like [`decimate`], and calls `watch` with the current number of faces after every 1024
-/// collapses. If `watch` returns `ControlFlow::Break`, the decimation ends.
+/// edges that were collapsed or refused, and earlier if these have ends with very many edges. If `watch`
+/// returns `ControlFlow::Break`, the decimation ends.
 ///
 /// # Errors
 ///
@@ -174,14 +185,20 @@ pub fn decimate_watched<M: MeshEdit>(
     if report.faces > target {
         work.fill_queue(mesh);
     }
+    let mut tried = 0;
     while report.faces > target {
-        let Some(entry) = work.queue.pop() else {
+        let Some((entry, valence)) = work.next_entry() else {
             report.stop = Stop::NoLegalEdit;
             break;
         };
-        if !work.is_current(&entry) {
-            continue;
+        if tried >= WATCH_INTERVAL {
+            tried = 0;
+            if watch(report.faces).is_break() {
+                report.stop = Stop::Requested;
+                break;
+            }
         }
+        tried += 1 + (valence / HUB) as usize;
         let Some(error) = work.collapse(mesh, &entry) else {
             report.refused += 1;
             // A polynomial of the ends, modulo 2⁶⁴. The odd factor mixes the order in.
@@ -193,10 +210,6 @@ pub fn decimate_watched<M: MeshEdit>(
         report.max_error = report.max_error.max(error);
         report.faces = mesh.face_count();
         report.collapses += 1;
-        if report.collapses.is_multiple_of(WATCH_INTERVAL) && watch(report.faces).is_break() {
-            report.stop = Stop::Requested;
-            break;
-        }
     }
     // Areas and squared distances were computed in a box of unit size.
     report.max_error *= work.size.powi(4);
@@ -215,14 +228,35 @@ struct Vertex {
     at: Point,
     /// Changes when the vertex changes.
     version: u32,
+    /// The number of edges when they were last added to the queue.
+    valence: u32,
+    /// For a hub: the number of collapses until all of its edges are added to the queue again.
+    wait: u16,
     /// Whether the vertex must not move.
     fixed: bool,
+    /// The place on the curves. A collapse that meets the link condition keeps the curves.
+    curve: Curve,
+}
+
+impl Vertex {
+    fn is_hub(&self) -> bool {
+        self.valence > HUB
+    }
+
+    fn set_valence(&mut self, valence: u32) {
+        self.valence = valence;
+        self.wait = u16::try_from(valence / HUB_PART).unwrap_or(u16::MAX);
+    }
 }
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
     vertices: Vec<Vertex>,
     queue: Queue,
+    /// Edges at hubs that are tried after the other edges.
+    last: Vec<Entry>,
+    /// The number of edges at hubs that may be visited before `last` is tried.
+    visits: usize,
     /// The distance to the input, if it is limited.
     deviation: Option<Deviation>,
     /// The size of the mesh. Positions are divided by this size.
@@ -248,6 +282,8 @@ impl<M: MeshEdit> Work<M> {
             numbering,
             vertices,
             queue: Queue::new(),
+            last: Vec::new(),
+            visits: 0,
             deviation: None,
             size: if size > 0.0 { size } else { 1.0 },
         };
@@ -261,6 +297,7 @@ impl<M: MeshEdit> Work<M> {
         let face_counts = mesh.edge_face_counts();
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
         let mut boundary_planes: Vec<([u32; 2], Quadric)> = Vec::new();
+        let mut curve_sides: Vec<[u32; 2]> = Vec::new();
         for f in mesh.faces() {
             let mut numbers = corners(mesh, f).map(|v| self.numbering.number(v));
             // Starts at the lowest number, so that rounding is the same on every structure.
@@ -268,28 +305,31 @@ impl<M: MeshEdit> Work<M> {
             numbers.rotate_left(least);
             let [a, b, c] = numbers;
             let cross = self.offset(a, b).cross(self.offset(a, c));
-            let Some(normal) = cross.try_normalize() else {
-                continue;
-            };
-            let plane = Quadric::plane(normal, cross.length() / 2.0);
-            for n in numbers {
-                quadrics[n as usize] += plane;
+            let normal = cross.try_normalize();
+            if let Some(normal) = normal {
+                let plane = Quadric::plane(normal, cross.length() / 2.0);
+                for n in numbers {
+                    quadrics[n as usize] += plane;
+                }
             }
-            for e in mesh.face_edges(f) {
+            for e in mesh.face_edges(f).filter(|&e| face_counts[e] != 2) {
                 let (i, j) = self.ends(mesh, e);
-                if face_counts[e] != 2 {
-                    let along = self.offset(i, j);
-                    if let Some(normal) = along.cross(normal).try_normalize() {
-                        let weight = BOUNDARY_WEIGHT * along.length_squared();
-                        boundary_planes.push(([i, j], Quadric::plane(normal, weight)));
-                    }
-                    if face_counts[e] == 1 && boundary == DecimationBoundary::Fixed {
-                        self.vertices[i as usize].fixed = true;
-                        self.vertices[j as usize].fixed = true;
-                    }
+                curve_sides.push([i, j]);
+                let Some(normal) = normal else {
+                    continue;
+                };
+                let along = self.offset(i, j);
+                if let Some(normal) = along.cross(normal).try_normalize() {
+                    let weight = BOUNDARY_WEIGHT * along.length_squared();
+                    boundary_planes.push(([i, j], Quadric::plane(normal, weight)));
+                }
+                if face_counts[e] == 1 && boundary == DecimationBoundary::Fixed {
+                    self.vertices[i as usize].fixed = true;
+                    self.vertices[j as usize].fixed = true;
                 }
             }
         }
+        self.set_curves(curve_sides);
         // Sorted, because the order of the edges of a face depends on the structure.
         boundary_planes.sort_by_key(ends_of);
         for (ends, plane) in boundary_planes {
@@ -299,6 +339,20 @@ impl<M: MeshEdit> Work<M> {
         }
         for (vertex, quadric) in self.vertices.iter_mut().zip(quadrics) {
             vertex.quadric = quadric.into();
+        }
+    }
+
+    /// Sets the places of the vertices on curves, from the sides of the faces along curves.
+    fn set_curves(&mut self, mut sides: Vec<[u32; 2]>) {
+        sides.sort_unstable();
+        let edges = sides.chunk_by(|one, other| one == other);
+        let mut spokes: Vec<[u32; 2]> = edges
+            .flat_map(|edge| edge[0].map(|n| [n, row(edge.len())]))
+            .collect();
+        spokes.sort_unstable();
+        for at_vertex in spokes.chunk_by(|one, other| one[0] == other[0]) {
+            let counts = at_vertex.iter().map(|&[_, faces]| faces as usize);
+            self.vertices[at_vertex[0][0] as usize].curve = Curve::from_face_counts(counts);
         }
     }
 
@@ -315,9 +369,52 @@ impl<M: MeshEdit> Work<M> {
     }
 
     fn fill_queue(&mut self, mesh: &M) {
+        let mut valences = vec![0; self.vertices.len()];
         for e in mesh.edges() {
             let (a, b) = self.ends(mesh, e);
             self.push_edge(a, b);
+            for n in [a, b] {
+                valences[n as usize] += 1;
+            }
+            self.visits += HUB_VISITS;
+        }
+        for (vertex, valence) in self.vertices.iter_mut().zip(valences) {
+            vertex.set_valence(valence);
+        }
+    }
+
+    /// Returns the next edge to try and the valence of its ends. The visits of hubs must not take most
+    /// of the time. Therefore, edges at hubs wait for the other edges after very many visits.
+    fn next_entry(&mut self) -> Option<(Entry, u32)> {
+        loop {
+            let Some(entry) = self.queue.pop() else {
+                if self.last.is_empty() {
+                    return None;
+                }
+                for entry in std::mem::take(&mut self.last) {
+                    self.visits += HUB_VISITS;
+                    if self.is_current(&entry) {
+                        let [a, b] = entry.ends;
+                        self.push_edge(a, b);
+                    }
+                }
+                continue;
+            };
+            if !self.is_current(&entry) {
+                continue;
+            }
+            let [a, b] = entry.ends.map(|n| self.vertices[n as usize].valence);
+            let valence = a.max(b);
+            if valence <= HUB {
+                return Some((entry, valence));
+            }
+            match self.visits.checked_sub(valence as usize) {
+                Some(rest) => {
+                    self.visits = rest;
+                    return Some((entry, valence));
+                }
+                None => self.last.push(entry),
+            }
         }
     }
 
@@ -382,28 +479,50 @@ impl<M: MeshEdit> Work<M> {
 
     /// Collapses the edge of `entry` if possible, and returns the error of the collapse.
     fn collapse(&mut self, mesh: &mut M, entry: &Entry) -> Option<f64> {
-        let [a, b] = entry.ends;
-        let e = self.numbering.edge(mesh, entry.ends)?;
-        let placement = self.best_placement(entry.ends)?;
-        let [p, q] = [a, b].map(|n| self.vertices[n as usize]);
+        let mut ends = entry.ends;
+        let [first, second] = ends.map(|n| self.vertices[n as usize].valence);
+        // A hub stays, so that its edges do not change.
+        if second > first.max(HUB) {
+            ends.reverse();
+        }
+        let [a, b] = ends;
+        let [p, q] = ends.map(|n| self.vertices[n as usize]);
+        let e = match p.is_hub() {
+            true => self.numbering.edge(mesh, [b, a])?,
+            false => self.numbering.edge(mesh, [a, b])?,
+        };
+        let placement = self.best_placement(ends)?;
         // A fixed end keeps its exact position.
         let to = match [p.fixed, q.fixed] {
             [true, _] => p.at,
             [_, true] => q.at,
             _ => (p.at.as_dvec3() + placement.offset * self.size).as_vec3(),
         };
-        let ends = [a, b].map(|n| self.numbering.handle(n));
-        if !keeps_orientation(mesh, ends, to.as_dvec3()) || !may_collapse(mesh, e) {
+        let [kept, gone] = ends.map(|n| self.numbering.handle(n));
+        let curve = |v| self.vertices[self.numbering.number(v) as usize].curve;
+        let is_legal = (!M::CAPABILITIES.non_manifold_edges
+            || keeps_topology(mesh, e, [gone, kept], p.is_hub(), curve))
+            && keeps_orientation(mesh, [gone, kept], to.as_dvec3());
+        if !is_legal {
             return None;
         }
         if let Some(deviation) = &mut self.deviation
-            && !deviation.allows(mesh, &self.numbering, entry.ends, to)
+            && !deviation.allows(mesh, &self.numbering, ends, to)
         {
             return None;
         }
-        let kept = mesh.collapse_edge(e, ends[0], to).ok()?;
+        // All edges of a hub are added to the queue rarely, the edges that it receives at once.
+        let waits = p.is_hub() && p.wait > 1 && !q.is_hub();
+        let received: Vec<u32> = match waits {
+            true => mesh
+                .vertex_vertices(gone)
+                .map(|v| self.numbering.number(v))
+                .collect(),
+            false => Vec::new(),
+        };
+        let kept = mesh.collapse_edge(e, kept, to).ok()?;
         if let Some(deviation) = &mut self.deviation {
-            deviation.merge(entry.ends);
+            deviation.merge(ends);
         }
         self.numbering.set_handle(a, kept);
         self.numbering.remove(b);
@@ -412,13 +531,25 @@ impl<M: MeshEdit> Work<M> {
         self.vertices[a as usize] = Vertex {
             quadric: placement.sum.with_origin(offset).into(),
             at: to,
-            version: p.version.wrapping_add(1),
+            version: p.version.wrapping_add(u32::from(!waits)),
+            wait: p.wait.saturating_sub(1),
             fixed: p.fixed || q.fixed,
+            curve: p.curve.max(q.curve),
+            ..p
         };
         // Outdates all entries with the removed end. Numbers are not reused.
         self.vertices[b as usize].version = q.version.wrapping_add(1);
-        for v in mesh.vertex_vertices(kept) {
-            self.push_edge(a, self.numbering.number(v));
+        if waits {
+            for n in received.into_iter().filter(|&n| n != a) {
+                self.push_edge(a, n);
+            }
+        } else {
+            let mut valence = 0;
+            for v in mesh.vertex_vertices(kept) {
+                self.push_edge(a, self.numbering.number(v));
+                valence += 1;
+            }
+            self.vertices[a as usize].set_valence(valence);
         }
         Some(placement.error)
     }

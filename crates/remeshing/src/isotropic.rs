@@ -9,7 +9,7 @@ use sixfold_core::{MeshEdit, row};
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
-use crate::rules::{at, is_boundary, keeps_orientation, may_collapse};
+use crate::rules::{HUB, at, is_boundary, keeps_orientation, may_collapse};
 
 /// `LONG`: minimum length of edges that are split. `SHORT`: maximum length of edges that are
 /// collapsed. Both are multiples of the target length.
@@ -24,9 +24,6 @@ const MIN_STEPS: f64 = 4.0;
 
 /// Maximum movement of a vertex that counts as no movement, as a fraction of the target length.
 const TOLERANCE: f64 = 1e-3;
-
-/// Edges at vertices with more edges than this are collapsed last.
-const HUB: u32 = 64;
 
 /// The options of remeshing. The defaults are at most 10 iterations and at most 10 million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -132,6 +132,10 @@ impl<M: MeshEdit> Numbering<M> {
             return None;
         }
         let ends = [a, b].map(|number| self.handle(number));
+        if M::CAPABILITIES.non_manifold_edges {
+            // These structures do not walk around a vertex.
+            return mesh.edge_between(ends[0], ends[1]);
+        }
         let joins = |&e: &M::Edge| mesh.edge_vertices(e).contains(&ends[1]);
         let mut at_a = mesh.vertex_edges(ends[0]);
         for _ in 0..FEW_EDGES {

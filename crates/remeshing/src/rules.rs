@@ -8,6 +8,9 @@ use crate::numbering::corners_from;
 /// Minimum cosine of the angle between the normals of a face before and after an edit.
 const MIN_COSINE: f64 = 0.2;
 
+/// A vertex with more edges than this is a hub: edits visit its edges rarely.
+pub(crate) const HUB: u32 = 64;
+
 /// Returns the position of `v` in f64.
 #[inline]
 pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
@@ -45,8 +48,8 @@ pub(crate) fn may_collapse<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
 }
 
 /// Returns whether edge `e` meets the link condition (Dey et al. 1999): a collapse of `e` then keeps
-/// the topology of the surface, and of the curves of edges that do not have two faces. O(v²), where v
-/// is the valence of the ends of `e`.
+/// the topology of the surface, and of the curves of edges that do not have two faces. O(v log v), where
+/// v is the valence of the ends of `e`, plus the costs of the queries.
 ///
 /// Half-edge, winged-edge and corner-table meshes refuse a collapse that does not meet the
 /// condition. Polygon soups, indexed face sets and face-vertex meshes also hold meshes that are not
@@ -83,7 +86,46 @@ pub(crate) fn may_collapse<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
-    let [a, b] = mesh.edge_vertices(e);
+    keeps_topology(mesh, e, mesh.edge_vertices(e), false, |v| curve_at(mesh, v))
+}
+
+/// The place of a vertex on the curves of edges that do not have two faces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Curve {
+    #[default]
+    Off,
+    Inside,
+    /// A curve ends at the vertex, or several curves meet there.
+    Corner,
+}
+
+impl Curve {
+    /// Returns the place of a vertex whose edges on curves have these numbers of faces.
+    pub(crate) fn from_face_counts(counts: impl Iterator<Item = usize>) -> Self {
+        let counts: Vec<usize> = counts.take(3).collect();
+        match counts[..] {
+            [] => Self::Off,
+            [one, other] if one == other => Self::Inside,
+            _ => Self::Corner,
+        }
+    }
+}
+
+/// Returns the place of `v` on the curves.
+pub(crate) fn curve_at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> Curve {
+    let counts = mesh.vertex_edges(v).map(|e| mesh.edge_faces(e).count());
+    Curve::from_face_counts(counts.filter(|&faces| faces != 2))
+}
+
+/// Returns whether edge `e` from `a` to `b` meets the link condition. `curve` returns the place of a
+/// vertex on the curves. If `is_hub`, `b` is a hub: its edges are not listed, but looked up from `a`.
+pub(crate) fn keeps_topology<M: MeshEdit>(
+    mesh: &M,
+    e: M::Edge,
+    [a, b]: [M::Vertex; 2],
+    is_hub: bool,
+    curve: impl Fn(M::Vertex) -> Curve,
+) -> bool {
     let mut faces = 0;
     let mut apexes = Vec::with_capacity(2);
     for f in mesh.edge_faces(e) {
@@ -92,12 +134,23 @@ pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
             apexes.extend(mesh.face_vertices(f).find(|&v| v != a && v != b));
         }
     }
-    if (1..apexes.len()).any(|i| apexes[..i].contains(&apexes[i])) {
+    apexes.sort_unstable();
+    if apexes.windows(2).any(|pair| pair[0] == pair[1]) {
         return false;
     }
-    let at_b: Vec<M::Vertex> = mesh.vertex_vertices(b).collect();
-    let at_a: Vec<M::Vertex> = mesh.vertex_vertices(a).collect();
-    let common = at_a.iter().filter(|v| at_b.contains(v)).count();
+    let at_a = mesh.vertex_vertices(a);
+    let common = if is_hub {
+        at_a.filter(|&v| v != b && mesh.edge_between(v, b).is_some())
+            .count()
+    } else {
+        let mut at_b: Vec<M::Vertex> = mesh.vertex_vertices(b).collect();
+        if at_b.len() > HUB as usize {
+            at_b.sort_unstable();
+            at_a.filter(|v| at_b.binary_search(v).is_ok()).count()
+        } else {
+            at_a.filter(|v| at_b.contains(v)).count()
+        }
+    };
     if common != apexes.len() {
         return false;
     }
@@ -111,52 +164,34 @@ pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
         return false;
     }
     match faces {
-        2 => !(is_on_curve(mesh, a) && is_on_curve(mesh, b)),
+        2 => curve(a) == Curve::Off || curve(b) == Curve::Off,
         _ => {
             let has_curves = |&apex: &M::Vertex| [a, b].iter().all(|&v| is_curve(mesh, v, apex));
-            let may_move = !is_corner(mesh, a) || !is_corner(mesh, b);
+            let may_move = curve(a) != Curve::Corner || curve(b) != Curve::Corner;
             may_move && !apexes.iter().any(has_curves)
         }
     }
 }
 
-/// Returns whether two triangles on both ends have the same other two corners, which are `apexes`: a
-/// collapse would make them one.
-fn is_in_tetrahedron<M: MeshEdit>(mesh: &M, ends: [M::Vertex; 2], apexes: &[M::Vertex]) -> bool {
-    let [at_a, at_b] = ends.map(|end| {
-        let faces = mesh
-            .vertex_faces(end)
-            .filter(|&f| mesh.face_vertices(f).count() == 3);
-        let opposite = faces.map(|f| {
-            let [_, p, q] = corners_from(mesh, f, end);
-            [p.min(q), p.max(q)]
-        });
-        let between = opposite.filter(|side| side.iter().all(|v| apexes.contains(v)));
-        between.collect::<Vec<_>>()
-    });
-    at_a.iter().any(|side| at_b.contains(side))
-}
-
-/// Returns the numbers of faces of the edges at `v` that do not have two faces.
-fn curves_at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> impl Iterator<Item = usize> {
-    let counts = mesh.vertex_edges(v).map(|e| mesh.edge_faces(e).count());
-    counts.filter(|&faces| faces != 2)
-}
-
-fn is_on_curve<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
-    curves_at(mesh, v).next().is_some()
-}
-
-/// Returns whether a curve ends at `v`.
-fn is_corner<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
-    let curves: Vec<usize> = curves_at(mesh, v).take(3).collect();
-    !matches!(curves[..], [one, other] if one == other)
+/// Returns whether a triangle on each end has the same other two corners, which are two of the sorted
+/// `apexes`: a collapse would make these triangles one. Looks at the triangles on `a`.
+fn is_in_tetrahedron<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], apexes: &[M::Vertex]) -> bool {
+    let is_triangle = |&f: &M::Face| mesh.face_vertices(f).count() == 3;
+    mesh.vertex_faces(a).filter(is_triangle).any(|f| {
+        let [_, p, q] = corners_from(mesh, f, a);
+        let are_apexes = [p, q].iter().all(|v| apexes.binary_search(v).is_ok());
+        let side = are_apexes.then(|| mesh.edge_between(p, q)).flatten();
+        side.is_some_and(|side| {
+            let mut triangles = mesh.edge_faces(side).filter(is_triangle);
+            triangles.any(|f| mesh.face_vertices(f).any(|v| v == b))
+        })
+    })
 }
 
 /// Returns whether the edge between two adjacent vertices does not have two faces.
 fn is_curve<M: MeshEdit>(mesh: &M, a: M::Vertex, b: M::Vertex) -> bool {
     let e = mesh.edge_between(a, b);
-    e.is_some_and(|e| mesh.edge_faces(e).count() != 2)
+    e.is_some_and(|e| mesh.edge_faces(e).take(3).count() != 2)
 }
 
 /// Returns whether `v` is an end of an edge with one face.

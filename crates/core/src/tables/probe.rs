@@ -56,6 +56,8 @@ pub struct Traced {
 struct Log {
     accesses: Vec<Access>,
     is_paused: bool,
+    /// The largest number of accesses; `None` for any number.
+    limit: Option<usize>,
 }
 
 impl Traced {
@@ -72,9 +74,18 @@ impl Traced {
         result
     }
 
+    /// Calls `observed`, and records no access while the log has `limit` accesses.
+    pub fn limit<T>(&self, limit: usize, observed: impl FnOnce() -> T) -> T {
+        let before = self.log().limit.replace(limit);
+        let result = observed();
+        self.log().limit = before;
+        result
+    }
+
     fn push(&self, access: Access) {
         let mut log = self.log();
-        if !log.is_paused {
+        let is_full = log.limit.is_some_and(|limit| log.accesses.len() >= limit);
+        if !log.is_paused && !is_full {
             log.accesses.push(access);
         }
     }
@@ -103,5 +114,20 @@ impl Probe for Traced {
             row,
             bytes,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn accesses_after_the_limit_are_not_recorded() {
+        let probe = Traced::default();
+        let read = |count| (0..count).for_each(|row| probe.read("faces", row, 4));
+        probe.limit(3, || read(5));
+        assert_eq!(probe.take().len(), 3);
+        read(5);
+        assert_eq!(probe.take().len(), 5);
     }
 }

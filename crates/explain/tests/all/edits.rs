@@ -520,3 +520,20 @@ fn an_edit_without_its_elements_is_an_error() {
     let error = error.expect_err("the octahedron has 8 faces").to_string();
     assert_eq!(error, "half-edge has no face f8 in this mesh");
 }
+
+#[test]
+fn an_edit_with_very_many_accesses_is_not_shown() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let coincident = PolygonMesh::new(corners, vec![[0, 1, 2]; 3_000]).expect("valid");
+    let structure = Structure::find("face-vertex").expect("one of six");
+    let removal: EditByName = "remove_vertex v0".parse().expect("an edit");
+    let mut mesh = edited(&structure, &coincident, &[]);
+    let error = mesh.edit(&removal).expect_err("3,000 × 3,000 reads");
+    assert_eq!(
+        error.to_string(),
+        "face-vertex makes more than 8000000 reads and writes for remove_vertex v0: choose a smaller mesh, \
+         or an element with fewer faces"
+    );
+    assert_eq!(mesh.edit(&removal), Err(error), "the mesh is unchanged");
+    assert_eq!(mesh.apply(&removal), Ok(None));
+}

@@ -6,6 +6,7 @@ use sixfold_indexed_face_set::EditableIndexedFaceSet;
 use sixfold_spatial::{Bvh, SpatialIndex, SurfaceQueries, polygon_triangles};
 
 use super::*;
+use crate::rules::curve_at;
 
 fn decimation(target: Target, boundary: DecimationBoundary) -> Decimation {
     Decimation {
@@ -170,7 +171,8 @@ fn watch_can_end_the_decimation() {
         &mut |_| ControlFlow::Break(()),
     );
     let report = report.expect("triangles");
-    assert_eq!((report.stop, report.collapses), (Stop::Requested, 1024));
+    let tried = report.collapses + report.refused;
+    assert_eq!((report.stop, tried), (Stop::Requested, 1024));
     assert_eq!(mesh.validate(), Ok(()));
 }
 
@@ -285,4 +287,90 @@ fn a_flat_surface_does_not_deviate() {
         let error = decimate(&mut mesh, &bounded(distance)).expect_err("invalid");
         assert!(matches!(error, RemeshError::BadDistance { .. }), "{error}");
     }
+}
+
+/// Returns octahedra that share vertex 0.
+fn octahedra_at_one_vertex(n: u32) -> PolygonMesh {
+    let octahedron = sixfold_shapes::octahedron();
+    let first = octahedron.position(sixfold_core::VertexId::new(0));
+    let mut points = vec![Point::ZERO];
+    let mut faces = Vec::new();
+    for i in 0..n {
+        let shift = points.len() as u32 - 1;
+        let angle = f64::from(i) * std::f64::consts::TAU / f64::from(n);
+        let turn = glam::Mat3::from_rotation_y(angle as f32);
+        points.extend(
+            octahedron.positions()[1..]
+                .iter()
+                .map(|&p| turn * (p - first)),
+        );
+        faces.extend(octahedron.faces().iter().map(|(_, face)| {
+            [0, 1, 2].map(|i| match face[i].index() as u32 {
+                0 => 0,
+                other => other + shift,
+            })
+        }));
+    }
+    PolygonMesh::new(points, faces).expect("valid")
+}
+
+#[test]
+fn collapses_keep_the_curves() {
+    for polygons in [
+        three_plates(6),
+        octahedra_at_one_vertex(40),
+        sixfold_shapes::triangle_grid(12, 12).expect("small"),
+    ] {
+        let mut mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        let mut work = Work::new(&mesh, DecimationBoundary::Follow).expect("triangles");
+        work.fill_queue(&mesh);
+        let mut collapses = 0;
+        while let Some((entry, _)) = work.next_entry() {
+            collapses += usize::from(work.collapse(&mut mesh, &entry).is_some());
+        }
+        assert!(collapses > 10, "{collapses}");
+        for v in mesh.vertices() {
+            let vertex = work.vertices[work.numbering.number(v) as usize];
+            assert_eq!(vertex.curve, curve_at(&mesh, v), "{v}");
+        }
+    }
+}
+
+#[test]
+fn edges_at_hubs_are_tried_last_after_very_many_visits() {
+    let polygons = octahedra_at_one_vertex(40);
+    let mut mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
+    let mut faces = Vec::new();
+    for visits in [None, Some(0)] {
+        let mut mesh = mesh.clone();
+        let mut work = Work::new(&mesh, DecimationBoundary::Follow).expect("triangles");
+        work.fill_queue(&mesh);
+        work.visits = visits.unwrap_or(work.visits);
+        while let Some((entry, _)) = work.next_entry() {
+            work.collapse(&mut mesh, &entry);
+        }
+        faces.push(mesh.face_count());
+    }
+    // No octahedron becomes smaller than a tetrahedron.
+    assert_eq!(faces, [40 * 4; 2]);
+    let report = decimate(&mut mesh, &bounded(f64::INFINITY)).expect("triangles");
+    assert_eq!((report.faces, report.stop), (40 * 4, Stop::NoLegalEdit));
+}
+
+#[test]
+fn watch_is_called_between_refused_edges() {
+    // All triangles have one edge in common, and no edge can collapse.
+    let n = 2000;
+    let rim = (0..n).map(|i| {
+        let (sin, cos) = (i as f32 * 0.003).sin_cos();
+        Point::new(cos, sin, 0.0)
+    });
+    let points = [Point::ZERO, Point::Z].into_iter().chain(rim);
+    let book = PolygonMesh::new(points, (0..n).map(|i| [0, 1, i + 2])).expect("valid");
+    let mut mesh = EditableIndexedFaceSet::from_polygons(&book).expect("holds all");
+    let options = decimation(Target::Faces(0), DecimationBoundary::Follow);
+    let report = decimate_watched(&mut mesh, &options, &mut |_| ControlFlow::Break(()));
+    let report = report.expect("triangles");
+    assert_eq!((report.stop, report.collapses), (Stop::Requested, 0));
+    assert!(report.refused < 1024, "{}", report.refused);
 }
