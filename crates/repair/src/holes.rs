@@ -5,7 +5,9 @@ mod minimum_area;
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
-use sixfold_core::{Capabilities, Incidence, Pair, PolygonCutter, PolygonMesh, VertexId, row};
+use sixfold_core::{
+    Capabilities, FaceId, Incidence, Pair, PolygonCutter, PolygonMesh, VertexId, row,
+};
 
 use crate::error::RepairError;
 use crate::outcome::{Left, Outcome, StepCounts};
@@ -22,9 +24,10 @@ use minimum_area::minimum_area_triangulation;
 /// A hole with n edges is filled with n − 2 triangles, without new vertices. No diagonal is used
 /// that is already an edge, because that edge would get more than two faces. If this is impossible,
 /// the hole remains and is named in the report. So does a hole whose triangles would lie on faces of
-/// the mesh: the outer boundary of a flat part is one, and so are the three sides of a face that
+/// the mesh: the outer boundary of a flat part is one, and so are the sides of a face that
 /// shares no edge, and a hole with another part of the mesh in it. Faces lie on triangles if they are
-/// nearly parallel to them, within 0.005 of the mean length of the hole's edges.
+/// nearly parallel to them, within 0.005 of the mean length of the hole's edges. A hole also remains
+/// if so many faces are near its triangles that this is not known.
 ///
 /// Holes are filled in the order of their area. A hole whose triangles would lie on those of a
 /// smaller hole remains; if the triangles of two holes coincide, both remain.
@@ -167,6 +170,13 @@ impl<'a> Filling<'a> {
     /// leaves the hole if there is none.
     fn propose(&mut self, hole: usize) {
         let corners = &self.loops[hole];
+        self.mark_hole(hole);
+        let face = self.holes.face_beside(corners);
+        let face = self.polygons.faces().face(face);
+        if face.len() == corners.len() && face.iter().all(|&v| self.is_in_hole(hole, v)) {
+            self.leave_covering(hole);
+            return;
+        }
         let triangles = self.holes.triangulate(self.polygons, corners, self.method);
         let Some(triangles) = triangles else {
             self.leave(hole, |vertex, edges| Left::BlockedHole { vertex, edges });
@@ -177,7 +187,6 @@ impl<'a> Filling<'a> {
             .map(|triangle| triangle.map(|i| corners[i]))
             .collect();
         let patch = Patch::new(self.polygons, corners, &triangles);
-        self.mark_hole(hole);
         let covered = self.surface.on(&patch, |v| self.is_in_hole(hole, v));
         if patch.is_covered(covered) {
             self.leave_covering(hole);
@@ -215,7 +224,7 @@ impl<'a> Filling<'a> {
         }
         let mut is_twice = vec![false; proposals.len()];
         for (p, covers) in covers.iter().enumerate() {
-            for &(q, covered) in covers {
+            for &(q, covered) in covers.iter().flatten() {
                 if coincide(&proposals[p].patch, &proposals[q].patch, covered) {
                     (is_twice[p], is_twice[q]) = (true, true);
                 }
@@ -230,9 +239,9 @@ impl<'a> Filling<'a> {
             let Some(proposal) = proposals[p].take() else {
                 continue;
             };
-            let below = covers[p].iter().filter(|(q, _)| is_accepted[*q]);
+            let below = covers[p].iter().flatten().filter(|(q, _)| is_accepted[*q]);
             let covered = below.fold(proposal.covered, |sum, &(_, covered)| sum.with(covered));
-            if is_twice[p] || proposal.patch.is_covered(covered) {
+            if is_twice[p] || covers[p].is_none() || proposal.patch.is_covered(covered) {
                 self.leave_covering(proposal.hole);
                 continue;
             }
@@ -265,6 +274,8 @@ impl<'a> Filling<'a> {
 struct Holes {
     /// The boundary edges, each with the hole on its left, sorted.
     sides: Vec<[VertexId; 2]>,
+    /// By side: the face on its right.
+    faces: Vec<FaceId>,
     /// The edges between boundary vertices.
     edges: FxHashSet<Pair<VertexId>>,
     /// Those of them that filling added.
@@ -281,10 +292,11 @@ impl Holes {
             if let Some(side) = edge.single() {
                 let [low, high] = edge.ends;
                 // Against the direction of the face.
-                sides.push(match side.downward {
+                let ends = match side.downward {
                     true => [low, high],
                     false => [high, low],
-                });
+                };
+                sides.push((ends, side.face));
                 edge.ends
                     .iter()
                     .for_each(|v| is_on_boundary[v.index()] = true);
@@ -294,8 +306,10 @@ impl Holes {
         let ends = incidence.edges().map(|edge| edge.ends);
         let inner = ends.filter(|ends| ends.iter().all(|v| is_on_boundary[v.index()]));
         let edges = inner.map(|[a, b]| Pair::new(a, b)).collect();
+        let (sides, faces) = sides.into_iter().unzip();
         Self {
             sides,
+            faces,
             edges,
             diagonals: FxHashSet::default(),
         }
@@ -348,6 +362,12 @@ impl Holes {
         let free = (first..first + sides.count()).filter(|&side| !is_used[side]);
         // The first of several with the same angle.
         free.rev().max_by(|&a, &b| cosine(a).total_cmp(&cosine(b)))
+    }
+
+    /// Returns the face beside the first side of a hole.
+    fn face_beside(&self, hole: &[VertexId]) -> FaceId {
+        let side = self.sides.binary_search(&[hole[0], hole[1]]);
+        self.faces[side.expect("a side of the hole")]
     }
 
     fn add_triangle(&mut self, triangle: [VertexId; 3]) {

@@ -1,13 +1,12 @@
 //! Whether patches of holes would lie on the mesh, or on each other.
 
-use std::cell::OnceCell;
 use std::hash::BuildHasher as _;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
 use rustc_hash::{FxBuildHasher, FxHashMap};
-use sixfold_core::{PolygonMesh, VertexId, row};
-use sixfold_spatial::{Bounds, Bvh, FaceTriangle, Item, NamedBox, SpatialIndex, polygon_triangles};
+use sixfold_core::{FaceId, PolygonMesh, VertexId, row};
+use sixfold_spatial::{Bvh, FaceTriangle, SpatialError, SpatialIndex, polygon_triangles};
 
 /// A face lies on a patch within this part of the mean length of the hole's edges.
 const REACH: f64 = 0.005;
@@ -27,11 +26,17 @@ const FINE_EDGES: f64 = 64.0;
 /// The most that parts are coarser than edges where they are compared with the mesh, of patches with up
 /// to 900 edges; for n edges √n / 5. A round patch has O(n) such parts.
 const MOST_COARSE: f64 = 6.0;
-/// A part of a patch is cut if more items than this are near it.
+/// A part of a patch is cut if more items than this lie on it.
 const MOST_NEAR: usize = 48;
-/// A part is cut further if more items than this are near it, and then compared with only so many: there are
-/// more near a vertex of very many faces.
+/// A part is cut further if more items than this lie on it, and then compared with only so many: there are
+/// more at a vertex of very many faces.
 const MOST_AT_PART: usize = 256;
+/// A part is compared with at most so many items that may lie on it.
+const MOST_COMPARED: usize = 4096;
+/// An item lies on a part if it covers more than this of it. A smaller area is only a rounding error.
+const ROUNDING: f64 = 1e-9;
+/// A part is not cut if items lie on it in at least so many layers.
+const MOST_LAYERS: f64 = 16.0;
 /// How many times shorter those parts are.
 const CROWDED_PARTS: f64 = 16.0;
 /// In a cube as long as a part, of more parts than this only some are compared, and count for the others.
@@ -45,8 +50,6 @@ pub(super) struct Patch {
     mean_edge: f64,
     /// The distance within which faces lie on the patch.
     reach: f64,
-    low: DVec3,
-    high: DVec3,
 }
 
 /// A triangle of a patch, or a part of it.
@@ -79,15 +82,12 @@ impl Patch {
         let area = 0.5 * doubled.sum::<f64>();
         // A patch is not wider than this if it is as long as half of its boundary.
         let width = 2.0 * area / length;
-        let corners = || hole.iter().map(|&v| position(v));
         Self {
             triangles,
             area,
             edges,
             mean_edge,
             reach: REACH * mean_edge.min(width),
-            low: corners().fold(DVec3::INFINITY, DVec3::min),
-            high: corners().fold(DVec3::NEG_INFINITY, DVec3::max),
         }
     }
 
@@ -109,26 +109,35 @@ impl Patch {
     }
 
     /// Calls `visit` with each item that lies on the patch, and the area of the part of the patch on
-    /// which it lies; several times if it lies on several parts. Ends if `visit` returns true.
+    /// which it lies; several times if it lies on several parts. If a part is near too many items to find all
+    /// that lie on it, the last call for it is without an item, and the rest of the part counts as covered.
+    /// Ends if `visit` returns true.
     ///
-    /// Parts of the patch near many items are cut down to `part_length`. Where many parts are near many
-    /// items, as around a vertex of many long triangles, the areas are estimates.
+    /// Parts of the patch on which many items lie are cut down to `part_length`. Where many items lie on many
+    /// parts, as around a vertex of many long triangles, the areas are estimates.
     fn find_covers<F: Copy + Send + Sync>(
         &self,
-        index: &Bvh<FaceTriangle<F>>,
+        index: &ByNormal<F>,
         part_length: f64,
-        mut visit: impl FnMut(F, f64) -> bool,
+        is_chosen: impl Fn(F) -> bool,
+        mut visit: impl FnMut(Option<F>, f64) -> bool,
     ) {
-        let mut clipper = Clipper::default();
-        let mut near = Vec::new();
+        let mut finder = Finder {
+            index,
+            reach: self.reach,
+            is_chosen,
+            clipper: Clipper::default(),
+            found: Vec::new(),
+        };
         let mut crowds = Crowds::default();
         // Each with the number of parts for which it counts.
         let mut parts: Vec<([DVec3; 3], usize)> = Vec::new();
         for piece in &self.triangles {
             parts.push((piece.corners, 1));
             while let Some((part, mut count)) = parts.pop() {
-                find_near(index, part, self.reach, MOST_NEAR, &mut near);
-                if near.len() > MOST_NEAR {
+                let size = 0.5 * normal(part).length();
+                let mut are_all = finder.find(part, MOST_NEAR);
+                if !are_all && finder.found_area() < MOST_LAYERS * size {
                     count = crowds.share(part, count);
                     if count == 0 {
                         continue;
@@ -137,21 +146,22 @@ impl Patch {
                         parts.extend(halves.map(|half| (half, count)));
                         continue;
                     }
-                    find_near(index, part, self.reach, MOST_AT_PART, &mut near);
-                    let crowded = near.len() > MOST_AT_PART;
+                    are_all = finder.find(part, MOST_AT_PART);
                     let shortest = part_length / CROWDED_PARTS;
-                    if let Some(halves) = halves(part, shortest).filter(|_| crowded) {
+                    if let Some(halves) = halves(part, shortest).filter(|_| !are_all) {
                         parts.extend(halves.map(|half| (half, count)));
                         continue;
                     }
                 }
-                for &slot in &near {
-                    let item = &index.items()[slot];
-                    let other = item.corners.map(|corner| corner.as_dvec3());
-                    let area = count as f64 * clipper.covered_area(part, other, self.reach);
-                    if area > 0.0 && visit(item.face, area) {
+                let count = count as f64;
+                for &(item, area) in &finder.found {
+                    if visit(Some(item), count * area) {
                         return;
                     }
+                }
+                let rest = (size - finder.found_area()).max(0.0);
+                if !are_all && visit(None, count * rest) {
+                    return;
                 }
             }
         }
@@ -187,31 +197,120 @@ impl Crowds {
     }
 }
 
-/// Finds the items whose boxes may be within `reach` of a triangle; more than `most` entries if this is
-/// not known, because there are more items around it.
-fn find_near<F: Copy + Send + Sync>(
-    index: &Bvh<FaceTriangle<F>>,
-    triangle: [DVec3; 3],
+/// Triangles by the direction of their normals, and then by place. So a patch among many triangles is
+/// compared only with those that are nearly parallel to it.
+struct ByNormal<F> {
+    /// By cube of [`ByNormal::CUBE`] around the end of the unit normal.
+    cubes: FxHashMap<[i8; 3], Bvh<FaceTriangle<F>>>,
+}
+
+impl<F: Copy + Send + Sync> ByNormal<F> {
+    const CUBE: f64 = 0.05;
+    /// The most that coordinates of unit normals differ if planes are nearly parallel.
+    const APART: f64 = 0.0201;
+
+    /// Sorts triangles; O(n log n).
+    fn new(items: impl IntoIterator<Item = FaceTriangle<F>>) -> Result<Self, SpatialError> {
+        let mut lists: FxHashMap<[i8; 3], Vec<FaceTriangle<F>>> = FxHashMap::default();
+        for item in items {
+            let up = item.normal().normalize_or_zero();
+            // A triangle without area lies on nothing.
+            if up != DVec3::ZERO {
+                lists
+                    .entry(up.to_array().map(Self::cube))
+                    .or_default()
+                    .push(item);
+            }
+        }
+        let cubes = lists
+            .into_iter()
+            .map(|(cube, list)| Ok((cube, Bvh::build(list)?)));
+        Ok(Self {
+            cubes: cubes.collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn cube(coordinate: f64) -> i8 {
+        (coordinate / Self::CUBE).floor() as i8
+    }
+
+    /// Calls `visit` with triangles until it breaks, among them those that are nearly parallel to a triangle
+    /// and within `reach` of it.
+    fn visit(
+        &self,
+        triangle: [DVec3; 3],
+        reach: f64,
+        mut visit: impl FnMut(&FaceTriangle<F>) -> ControlFlow<()>,
+    ) {
+        // Corners of parts are rounded.
+        let corners = triangle.map(|corner| corner.as_vec3());
+        let rounded = triangle.map(|corner| corner.abs().max_element());
+        let rounding = rounded.into_iter().fold(0.0, f64::max) * f64::from(f32::EPSILON);
+        let reach = ((reach + rounding) as f32).next_up();
+        let shape = FaceTriangle { face: (), corners };
+        let up = normal(triangle).normalize_or_zero();
+        let mut end = ControlFlow::Continue(());
+        for up in [up, -up] {
+            let [x, y, z] = up
+                .to_array()
+                .map(|at| Self::cube(at - Self::APART)..=Self::cube(at + Self::APART));
+            let cubes = x.flat_map(|x| y.clone().map(move |y| [x, y]));
+            for cube in cubes.flat_map(|[x, y]| z.clone().map(move |z| [x, y, z])) {
+                let Some(index) = self.cubes.get(&cube).filter(|_| end.is_continue()) else {
+                    continue;
+                };
+                index.visit_meeting(&shape, reach, |slot| {
+                    end = visit(&index.items()[slot]);
+                    end
+                });
+            }
+        }
+    }
+}
+
+/// Finds the items that lie on a part of a patch.
+struct Finder<'a, F, C> {
+    index: &'a ByNormal<F>,
     reach: f64,
-    most: usize,
-    near: &mut Vec<usize>,
-) {
-    // Corners of parts are rounded.
-    let corners = triangle.map(|corner| corner.as_vec3());
-    let rounded = triangle.map(|corner| corner.abs().max_element());
-    let rounding = rounded.into_iter().fold(0.0, f64::max) * f64::from(f32::EPSILON);
-    let reach = ((reach + rounding) as f32).next_up();
-    let shape = FaceTriangle { face: (), corners };
-    near.clear();
-    index.visit_meeting(&shape, reach, |slot| {
-        if shape.may_meet(None, &index.items()[slot].bounds().widened(reach)) {
-            near.push(slot);
-        }
-        match near.len() > most {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
+    is_chosen: C,
+    clipper: Clipper,
+    /// The items found last, and the area of the part on which each lies.
+    found: Vec<(F, f64)>,
+}
+
+impl<F: Copy + Send + Sync, C: Fn(F) -> bool> Finder<'_, F, C> {
+    /// Returns whether all items were found: there are at most `most`, and few others near the part.
+    fn find(&mut self, part: [DVec3; 3], most: usize) -> bool {
+        let Self {
+            index,
+            reach,
+            is_chosen,
+            clipper,
+            found,
+        } = self;
+        let least = ROUNDING * 0.5 * normal(part).length();
+        found.clear();
+        let (mut compared, mut are_all) = (0, true);
+        index.visit(part, *reach, |item| {
+            if is_chosen(item.face) {
+                compared += 1;
+                let area = clipper.covered_area(part, item.corners_f64(), *reach);
+                if area > least {
+                    found.push((item.face, area));
+                }
+            }
+            are_all = compared <= MOST_COMPARED && found.len() <= most;
+            match are_all {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(()),
+            }
+        });
+        are_all
+    }
+
+    fn found_area(&self) -> f64 {
+        self.found.iter().map(|(_, area)| area).sum()
+    }
 }
 
 /// The area of the part of a patch on which faces lie.
@@ -246,13 +345,13 @@ impl Covered {
 /// The surface before holes are filled.
 pub(super) struct Surface<'a> {
     polygons: &'a PolygonMesh,
-    index: Option<Bvh<FaceTriangle<sixfold_core::FaceId>>>,
+    index: Option<ByNormal<FaceId>>,
 }
 
 impl<'a> Surface<'a> {
     pub(super) fn new(polygons: &'a PolygonMesh) -> Self {
         // Without an index, because a coordinate is not finite, nothing lies on a patch.
-        let index = polygon_triangles(polygons).and_then(Bvh::build).ok();
+        let index = polygon_triangles(polygons).and_then(ByNormal::new).ok();
         Self { polygons, index }
     }
 
@@ -262,11 +361,17 @@ impl<'a> Surface<'a> {
         let mut covered = Covered::default();
         if let Some(index) = &self.index {
             let most_coarse = MOST_COARSE.max(0.2 * (patch.edges as f64).sqrt());
-            patch.find_covers(index, patch.part_length(most_coarse), |f, area| {
-                let mut face = self.polygons.faces().face(f).iter();
-                covered.add(face.any(|&v| is_in_hole(v)), area);
-                patch.is_covered(covered)
-            });
+            let length = patch.part_length(most_coarse);
+            patch.find_covers(
+                index,
+                length,
+                |_| true,
+                |f, area| {
+                    let face = f.map_or(&[][..], |f| self.polygons.faces().face(f));
+                    covered.add(face.iter().any(|&v| is_in_hole(v)), area);
+                    patch.is_covered(covered)
+                },
+            );
         }
         covered
     }
@@ -275,102 +380,69 @@ impl<'a> Surface<'a> {
 /// Several patches, by place.
 pub(super) struct Patches<'a> {
     patches: Vec<&'a Patch>,
-    /// The boxes of the patches.
-    boxes: Option<Bvh<NamedBox<usize>>>,
-    /// By patch: its pieces in an index, if they were needed.
-    pieces: Vec<OnceCell<Pieces>>,
-}
-
-struct Pieces {
-    /// By number: the triangle.
-    triangles: Vec<[VertexId; 3]>,
-    index: Option<Bvh<FaceTriangle<u32>>>,
+    /// Their triangles, each with the number of its patch.
+    index: Option<ByNormal<(u32, [VertexId; 3])>>,
 }
 
 impl<'a> Patches<'a> {
     /// Sorts patches; O(n log n).
     pub(super) fn new(patches: Vec<&'a Patch>) -> Self {
-        let boxes = patches.iter().enumerate().map(|(name, patch)| NamedBox {
-            name,
-            bounds: Bounds {
-                low: patch.low.as_vec3(),
-                high: patch.high.as_vec3(),
-            },
-        });
-        Self {
-            boxes: Bvh::build(boxes.collect()).ok(),
-            pieces: patches.iter().map(|_| OnceCell::new()).collect(),
-            patches,
+        let mut items = Vec::new();
+        for (number, patch) in patches.iter().enumerate() {
+            patch.add_pieces(row(number), &mut items);
         }
+        let index = ByNormal::new(items).ok();
+        Self { patches, index }
     }
 
-    /// Returns the patches that lie on a patch, each with its part. `is_in_hole` is true for the
-    /// vertices of the hole. Only patches whose boxes touch are compared.
+    /// Returns the patches that lie on a patch, each with its part; `None` if there are too many to tell them
+    /// apart. `is_in_hole` is true for the vertices of the hole.
     pub(super) fn on(
         &self,
         number: usize,
         is_in_hole: impl Fn(VertexId) -> bool,
-    ) -> Vec<(usize, Covered)> {
+    ) -> Option<Vec<(usize, Covered)>> {
         let patch = self.patches[number];
-        let mut near = Vec::new();
-        if let Some(boxes) = &self.boxes {
-            let around = NamedBox {
-                name: number,
-                bounds: Bounds {
-                    low: (patch.low - patch.reach).as_vec3().map(f32::next_down),
-                    high: (patch.high + patch.reach).as_vec3().map(f32::next_up),
-                },
-            };
-            boxes.visit_meeting(&around, 0.0, |slot| {
-                let other = &boxes.items()[slot];
-                if other.bounds.meets(&around.bounds) {
-                    near.push(other.name);
-                }
-                ControlFlow::Continue(())
+        let mut covers: FxHashMap<usize, Covered> = FxHashMap::default();
+        let mut are_known = true;
+        if let Some(index) = &self.index {
+            let is_other = |(other, _)| other as usize != number;
+            let length = patch.part_length(f64::INFINITY);
+            patch.find_covers(index, length, is_other, |item, area| {
+                let Some((other, triangle)) = item else {
+                    are_known = false;
+                    return true;
+                };
+                let other = covers.entry(other as usize).or_default();
+                other.add(triangle.into_iter().any(&is_in_hole), area);
+                false
             });
         }
-        near.sort_unstable();
-        near.retain(|&other| other != number);
-        let covers = near.into_iter().map(|other| {
-            let mut covered = Covered::default();
-            let pieces = self.pieces[other].get_or_init(|| self.patches[other].pieces());
-            if let Some(index) = &pieces.index {
-                patch.find_covers(index, patch.part_length(f64::INFINITY), |piece, area| {
-                    let mut triangle = pieces.triangles[piece as usize].into_iter();
-                    covered.add(triangle.any(&is_in_hole), area);
-                    false
-                });
-            }
-            (other, covered)
-        });
-        covers.collect()
+        let mut covers: Vec<_> = covers.into_iter().collect();
+        covers.sort_unstable_by_key(|&(other, _)| other);
+        are_known.then_some(covers)
     }
 }
 
 impl Patch {
-    /// Returns the triangles as items of an index; many of them in pieces, whose boxes overlap less.
-    fn pieces(&self) -> Pieces {
+    /// Appends the triangles as items of an index; many of them in pieces, whose boxes overlap less.
+    fn add_pieces(&self, number: u32, items: &mut Vec<FaceTriangle<(u32, [VertexId; 3])>>) {
         let length = match self.edges as f64 <= FINE_EDGES {
             true => f64::INFINITY,
             false => self.part_length(f64::INFINITY),
         };
-        let (mut triangles, mut items) = (Vec::new(), Vec::new());
         for piece in &self.triangles {
             let mut parts = vec![piece.corners];
             while let Some(part) = parts.pop() {
-                if let Some(halves) = halves(part, length) {
-                    parts.extend(halves);
-                    continue;
+                match halves(part, length) {
+                    Some(halves) => parts.extend(halves),
+                    None => items.push(FaceTriangle {
+                        face: (number, piece.triangle),
+                        corners: part.map(|corner| corner.as_vec3()),
+                    }),
                 }
-                items.push(FaceTriangle {
-                    face: row(triangles.len()),
-                    corners: part.map(|corner| corner.as_vec3()),
-                });
-                triangles.push(piece.triangle);
             }
         }
-        let index = Bvh::build(items).ok();
-        Pieces { triangles, index }
     }
 }
 
@@ -456,6 +528,9 @@ impl Clipper {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
+    use super::super::tests::scattered;
     use super::*;
 
     /// Around a vertex of many triangles, the covered area is an estimate from a few parts of the patch.
@@ -484,17 +559,65 @@ mod tests {
         for (is_in, part) in parts {
             let mut items = polygon_triangles(&fan).expect("finite");
             items.retain(|item| is_in(item.face.index()));
-            let index = Bvh::build(items).expect("finite");
+            let index = ByNormal::new(items).expect("finite");
             let (mut area, mut visits) = (0.0, 0);
-            patch.find_covers(&index, 0.1, |_, covered| {
-                area += covered;
-                visits += 1;
-                false
-            });
+            patch.find_covers(
+                &index,
+                0.1,
+                |_| true,
+                |_, covered| {
+                    area += covered;
+                    visits += 1;
+                    false
+                },
+            );
             let expected = part * patch.area();
             assert!((area / expected - 1.0).abs() < 0.15, "{area} {expected}");
             // All pairs at the centre alone would be ten times as many.
             assert!(visits < 100 * count, "{visits}");
+        }
+    }
+
+    /// Among triangles in all directions, a patch is compared with few.
+    #[test]
+    fn a_patch_is_compared_with_few_triangles() {
+        let comparisons = |count: u32| {
+            let triangles = scattered(count);
+            let items = polygon_triangles(&triangles).expect("finite");
+            let index = ByNormal::new(items).expect("finite");
+            let comparisons = Cell::new(0);
+            for (f, face) in triangles.faces().iter() {
+                let patch = Patch::new(&triangles, face, &[[face[0], face[1], face[2]]]);
+                let compare = |_| {
+                    comparisons.set(comparisons.get() + 1);
+                    true
+                };
+                let mut area = 0.0;
+                patch.find_covers(&index, f64::INFINITY, compare, |other, covered| {
+                    area += if other == Some(f) { covered } else { 0.0 };
+                    false
+                });
+                assert!((area / patch.area() - 1.0).abs() < 1e-6);
+            }
+            comparisons.get()
+        };
+        let [few, many] = [1000, 4000].map(comparisons);
+        assert!(many < 4_000_000 / 8 && many < 16 * few, "{few} {many}");
+    }
+
+    /// Patches at one place are not told apart if there are many, without a search of their parts.
+    #[test]
+    fn many_patches_at_one_place_cover_each_other() {
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p.as_vec3());
+        let triangle = PolygonMesh::new(points, [[0, 1, 2]]).expect("valid");
+        let corners = [0, 1, 2].map(VertexId::new);
+        for (count, are_known) in [(40, true), (400, false)] {
+            let patch = || Patch::new(&triangle, &corners, &[corners]);
+            let patches: Vec<Patch> = (0..count).map(|_| patch()).collect();
+            let patches = Patches::new(patches.iter().collect());
+            let covers = patches.on(7, |_| true);
+            assert_eq!(covers.is_some(), are_known);
+            assert_eq!(covers.map_or(39, |covers| covers.len()), 39);
         }
     }
 }

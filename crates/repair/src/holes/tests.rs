@@ -143,6 +143,7 @@ fn a_hole_whose_diagonals_are_edges_remains() {
     let mut blocked = Holes {
         edges: holes.edges.clone(),
         sides: holes.sides.clone(),
+        faces: holes.faces.clone(),
         diagonals: FxHashSet::default(),
     };
     let v = VertexId::new;
@@ -390,6 +391,72 @@ fn triangles_with_one_corner_at_one_place_are_covered_by_themselves() {
     });
     let faces = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     let fans = PolygonMesh::new(points, faces).expect("valid");
+    for method in METHODS {
+        let result = filled(&fans, method, None);
+        assert_eq!(
+            (result.is_changed(), covering(&result)),
+            (false, count as usize)
+        );
+    }
+}
+
+/// Returns large triangles at random places in the unit cube, not joined.
+pub(super) fn scattered(count: u32) -> PolygonMesh {
+    let mut state = 1_u64;
+    let mut draw = || {
+        // Marsaglia 2003.
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 40) as f32 / (1 << 24) as f32
+    };
+    let points: Vec<[f32; 3]> = (0..3 * count).map(|_| [draw(), draw(), draw()]).collect();
+    PolygonMesh::new(points, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2])).expect("valid")
+}
+
+#[test]
+fn the_sides_of_a_single_face_are_not_a_hole() {
+    let triangles = scattered(3000);
+    let skew = [[0.0; 3], [1.0, 0.0, 1.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]];
+    let skew = PolygonMesh::new(skew, [[0, 1, 2, 3]]).expect("valid");
+    for (mesh, count) in [(triangles, 3000), (skew, 1)] {
+        for method in METHODS {
+            let result = filled(&mesh, method, None);
+            assert_eq!((result.is_changed(), covering(&result)), (false, count));
+        }
+    }
+}
+
+/// Pyramids without a base that cross each other: each is closed, or named.
+#[test]
+fn crowded_holes_are_filled_or_named() {
+    let pyramids = scattered(600);
+    let apex = |f: u32| 3 * f + 3;
+    let faces = (0..300).map(|i| 2 * i).flat_map(|f| {
+        let [a, b, c] = [0, 1, 2].map(|i| 3 * f + i);
+        [[a, b, apex(f)], [b, c, apex(f)], [c, a, apex(f)]]
+    });
+    let pyramids = PolygonMesh::new(pyramids.positions().iter().copied(), faces).expect("valid");
+    for method in METHODS {
+        let result = filled(&pyramids, method, None);
+        let filled = result.steps[0].counts.holes_filled;
+        assert_eq!(filled + covering(&result), 300);
+        assert!(filled > 290, "{filled}");
+    }
+}
+
+/// Fans in nearly parallel planes with one common vertex.
+#[test]
+fn crowded_fans_are_covered_by_themselves() {
+    let count = 200_u32;
+    let rim = (0..11 * count).map(|i| {
+        let (sin, cos) = (0.3 * (i % 11) as f32).sin_cos();
+        [cos, sin, 0.001 * (i / 11) as f32]
+    });
+    let faces = (0..11 * count)
+        .filter(|i| i % 11 != 10)
+        .map(|i| [0, i + 1, i + 2]);
+    let fans = PolygonMesh::new([[0.0; 3]].into_iter().chain(rim), faces).expect("valid");
     for method in METHODS {
         let result = filled(&fans, method, None);
         assert_eq!(
