@@ -22,8 +22,7 @@ pub struct Crack {
     /// A tolerance of [`Step::Weld`](crate::Step::Weld) that closes the crack, in units of the
     /// coordinates.
     pub distance: f64,
-    /// The number of boundary edges that are no longer boundary edges after welding. Pairs whose faces are on
-    /// different sides do not count.
+    /// The number of boundary edges that are no longer boundary edges after welding.
     pub edges: usize,
     /// The number of edges with two faces that run in the same direction after welding, and were two
     /// boundary edges before. [`Step::Orient`](crate::Step::Orient) turns one of the faces.
@@ -488,18 +487,19 @@ mod tests {
     }
 
     #[test]
-    fn edges_that_do_not_close_are_not_cracks() {
-        // The faces are on different sides.
+    fn edges_with_faces_on_different_sides_are_cracks_and_corners_are_not() {
+        // The faces are on different sides: one of them must be turned.
         let flipped = |mut pair: Vec<PolygonMesh>, i: usize| {
             pair[i] = reversed(&pair[i]);
             pair
         };
         for i in [0, 1] {
             let mut parts = flipped(pairs([0.01].into_iter()), i);
-            assert_eq!(crack_of(&parts), None);
+            let crack = crack_of(&parts).expect("edges nearly meet");
+            assert_eq!((crack.edges, crack.same_direction), (2, 1));
             parts.extend([sheet(1, [20.0, 0.0, 0.0]), sheet(1, [21.01, 0.0, 0.0])]);
             let crack = crack_of(&parts).expect("edges nearly meet");
-            assert_eq!(crack.edges, 2);
+            assert_eq!((crack.edges, crack.same_direction), (4, 1));
         }
         let at_a_corner = [sheet(1, [0.0; 3]), sheet(1, [1.01, 1.01, 0.0])];
         assert_eq!(crack_of(&at_a_corner), None);
