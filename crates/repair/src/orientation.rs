@@ -97,6 +97,9 @@ pub enum UndecidedReason {
     PartlyInside(
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))] FaceId,
     ),
+    /// So many faces of open components are around the component that those that hide the outside
+    /// from it are not counted.
+    ManyAround,
 }
 
 impl fmt::Display for UndecidedReason {
@@ -110,6 +113,7 @@ impl fmt::Display for UndecidedReason {
             Self::PartlyInside(face) => {
                 write!(f, "is partly inside the open one of face {face}")
             }
+            Self::ManyAround => f.write_str("has very many faces of open ones around it"),
         }
     }
 }

@@ -31,14 +31,14 @@ const MOST_NEAR: usize = 48;
 /// A part is cut further if more items than this lie on it, and then compared with only so many: there are
 /// more at a vertex of very many faces.
 const MOST_AT_PART: usize = 256;
+/// How many times shorter those parts are.
+const CROWDED_PARTS: f64 = 16.0;
+/// A part is not cut if items lie on it in at least so many layers.
+const MOST_LAYERS: f64 = 16.0;
 /// A part is compared with at most so many items that may lie on it.
 const MOST_COMPARED: usize = 4096;
 /// An item lies on a part if it covers more than this of it. A smaller area is only a rounding error.
 const ROUNDING: f64 = 1e-9;
-/// A part is not cut if items lie on it in at least so many layers.
-const MOST_LAYERS: f64 = 16.0;
-/// How many times shorter those parts are.
-const CROWDED_PARTS: f64 = 16.0;
 /// In a cube as long as a part, of more parts than this only some are compared, and count for the others.
 const MOST_IN_CUBE: usize = 128;
 

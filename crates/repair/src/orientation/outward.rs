@@ -22,11 +22,13 @@ const ROUNDING: f64 = 1e-9;
 /// The part of all directions in which an open component must hide the outside, so that what it hides
 /// counts as inside of it. A solid hides it in all directions.
 const ENCLOSED: f64 = 0.9;
-/// The number of directions in which the outside is looked for, if all components are solid: the answer
-/// of most of them avoids errors at edges.
+/// The number of directions in which the first solid component is looked for: the answer of most of them
+/// avoids errors at edges.
 const FEW_DIRECTIONS: u32 = 3;
-/// The number of directions if components are open.
+/// The number of directions in which other components are looked for if some are open.
 const DIRECTIONS: u32 = 64;
+/// The most faces of open components that may hide the outside from a component, in all directions together.
+const MOST_HIDING: usize = 2048;
 
 /// Returns for each component whether all of its faces are to be reversed after those in
 /// [`Agreement::reverse`], so that it faces outward. `first` has the first face of each.
@@ -185,66 +187,132 @@ fn depths(
     for triangle in index.items() {
         sample[agreement.component(triangle.face)].get_or_insert(triangle);
     }
-    let any_open = (0..kinds.len()).any(|c| is_near[c] && kinds[c] == Kind::Open);
-    let directions = if any_open { DIRECTIONS } else { FEW_DIRECTIONS };
     let touching: Vec<bool> = depths.iter().map(Result::is_err).collect();
-    let by_first_hits = match any_open {
-        true => vec![None; first.len()],
-        false => depths_by_first_hits(&index, agreement, &touching, signs),
+    let any_open = (0..kinds.len()).any(|c| is_near[c] && kinds[c] == Kind::Open);
+    let solids_and_open = any_open.then(|| {
+        let of_kind = |kind| {
+            let is_chosen = is_near.iter().zip(kinds);
+            let is_chosen = is_chosen.map(|(&is_near, &own)| is_near && own == kind);
+            self::index(polygons, agreement, &is_chosen.collect::<Vec<bool>>())
+        };
+        (of_kind(Kind::Solid), of_kind(Kind::Open))
+    });
+    let (solids, open) = match &solids_and_open {
+        None => (Some(&index), None),
+        Some((solids, open)) => (solids.as_ref(), open.as_ref()),
     };
+    let solids = solids.map(|index| Solids {
+        depths: depths_by_first_hits(index, agreement, &touching, signs),
+        index,
+        agreement,
+        touching: &touching,
+        signs,
+        directions: if any_open { DIRECTIONS } else { FEW_DIRECTIONS },
+    });
     for (inner, sample) in sample.iter().enumerate() {
         let (Some(sample), Ok(_)) = (sample, &depths[inner]) else {
             continue;
         };
-        if let Some(depth) = by_first_hits[inner] {
-            depths[inner] = depth.map_err(|outer| UndecidedReason::Touches(first[outer]));
-            continue;
-        }
-        let hiding = hiding(&index, sample, agreement, directions);
         let is_around = |outer: usize| match (bounds[inner], bounds[outer]) {
             (Some(inner), Some(outer)) => outer.union(inner) == outer && inner != outer,
             _ => false,
         };
-        depths[inner] = depth(&hiding, kinds, is_around)
-            .and_then(|depth| {
-                let mut hiding = hiding.iter();
-                match hiding.find(|&&(c, part)| part > 0.5 && touching[c]) {
-                    Some(&(c, _)) => Err(c),
-                    None => Ok(depth),
-                }
-            })
-            .map_err(|outer| match kinds[outer] {
-                Kind::Open => UndecidedReason::PartlyInside(first[outer]),
-                _ => UndecidedReason::Touches(first[outer]),
-            });
+        let open = match open {
+            Some(open) => open_around(open, sample, agreement, is_around),
+            None => Ok(0),
+        };
+        depths[inner] = match open {
+            Ok(open) => solids
+                .as_ref()
+                .map_or(Ok(0), |solids| solids.around(sample))
+                .map(|solids| solids + open)
+                .map_err(|outer| UndecidedReason::Touches(first[outer])),
+            Err(Some(outer)) => Err(UndecidedReason::PartlyInside(first[outer])),
+            Err(None) => Err(UndecidedReason::ManyAround),
+        };
     }
     depths
 }
 
-/// Returns the number of components around a component, or an open one that is only partly around it.
-/// `hiding` are the components that hide the outside, and in which part of all directions. `is_around`
-/// returns whether the box of a component contains that of the inner one, and is larger.
-fn depth(
-    hiding: &[(usize, f64)],
-    kinds: &[Kind],
+/// Returns the number of open components around a component of which `sample` is a triangle; or one that is
+/// only partly around it; or `None` if there are too many. `is_around` returns whether the box of a
+/// component contains that of the inner one, and is larger.
+fn open_around(
+    index: &Bvh<FaceTriangle<FaceId>>,
+    sample: &FaceTriangle<FaceId>,
+    agreement: &Agreement,
     is_around: impl Fn(usize) -> bool,
-) -> Result<usize, usize> {
-    let (open, solid): (Vec<_>, Vec<_>) = hiding
-        .iter()
-        .copied()
-        .partition(|&(component, _)| kinds[component] == Kind::Open);
-    let solid = solid.iter().filter(|(_, part)| *part > 0.5).count();
+) -> Result<usize, Option<usize>> {
+    let mut most = MOST_HIDING;
+    let hiding = hiding(index, sample, agreement, DIRECTIONS, &mut most).ok_or(None)?;
     // Several open components, such as two halves, can be around it together.
-    let sum: f64 = open.iter().map(|(_, part)| part).sum();
+    let sum: f64 = hiding.iter().map(|(_, part)| part).sum();
     let whole = sum.round();
     if (sum - whole).abs() <= 1.0 - ENCLOSED {
-        return Ok(solid + whole as usize);
+        return Ok(whole as usize);
     }
     let partly =
         |&&(component, part): &&(usize, f64)| part > 1.0 - ENCLOSED && is_around(component);
-    match open.iter().find(partly) {
-        Some(&(component, _)) => Err(component),
-        None => Ok(solid),
+    match hiding.iter().find(partly) {
+        Some(&(component, _)) => Err(Some(component)),
+        None => Ok(0),
+    }
+}
+
+/// The solid components.
+struct Solids<'a> {
+    index: &'a Bvh<FaceTriangle<FaceId>>,
+    agreement: &'a Agreement,
+    touching: &'a [bool],
+    signs: &'a [f64],
+    /// The number of directions that decide if the first hits do not.
+    directions: u32,
+    /// By component: the number of components around it, or one around it that touches another.
+    depths: Vec<Option<Result<usize, usize>>>,
+}
+
+impl Solids<'_> {
+    /// Returns the number of solid components around a component of which `sample` is a triangle, or one
+    /// around it that touches another.
+    fn around(&self, sample: &FaceTriangle<FaceId>) -> Result<usize, usize> {
+        let own = self.agreement.component(sample.face);
+        self.depths[own]
+            .or_else(|| majority([0, 1, 2].map(|i| self.along(sample, i))))
+            .unwrap_or_else(|| self.by_all_hits(sample))
+    }
+
+    fn along(&self, sample: &FaceTriangle<FaceId>, i: u32) -> Option<Result<usize, usize>> {
+        let ray = Ray::new(centre(sample), direction(i, FEW_DIRECTIONS)).ok()?;
+        let own = self.agreement.component(sample.face);
+        depth_at(
+            self.index,
+            &ray,
+            self.agreement,
+            own,
+            self.touching,
+            self.signs,
+            |c| self.depths[c],
+        )
+    }
+
+    fn by_all_hits(&self, sample: &FaceTriangle<FaceId>) -> Result<usize, usize> {
+        let mut most = usize::MAX;
+        let hiding = hiding(
+            self.index,
+            sample,
+            self.agreement,
+            self.directions,
+            &mut most,
+        );
+        let hiding = hiding.unwrap_or_default().into_iter();
+        let around: Vec<usize> = hiding
+            .filter(|(_, part)| *part > 0.5)
+            .map(|(c, _)| c)
+            .collect();
+        match around.iter().find(|&&outer| self.touching[outer]) {
+            Some(&outer) => Err(outer),
+            None => Ok(around.len()),
+        }
     }
 }
 
@@ -424,39 +492,53 @@ fn depths_by_first_hits(
             let Some(ray) = ray else {
                 continue;
             };
-            let mut first = None;
-            index.first_hit_where(&ray, f64::INFINITY, |triangle| {
-                let is_other = component(triangle) != own;
-                if is_other {
-                    first = Some(*triangle);
-                }
-                is_other
-            });
-            depths[own] = match first {
-                None => Some(Ok(0)),
-                Some(hit) if touching[component(&hit)] => {
-                    let around = odd_hits(index, &ray, agreement, own);
-                    let outer = around.iter().find(|&&outer| touching[outer]);
-                    Some(outer.map_or(Ok(around.len()), |&outer| Err(outer)))
-                }
-                Some(hit) => {
-                    let other = component(&hit);
-                    let sign = match agreement.reverse[hit.face.index()] {
-                        true => -signs[other],
-                        false => signs[other],
-                    };
-                    let leaves = sign * hit.normal().dot(along);
-                    depths[other]
-                        .filter(|_| leaves != 0.0)
-                        .map(|depth| depth.map(|depth| depth + usize::from(leaves > 0.0)))
-                }
-            };
+            depths[own] = depth_at(index, &ray, agreement, own, touching, signs, |c| depths[c]);
         }
         depths
     };
     let [a, b, c] = [0, 1, 2].map(in_direction);
     let all = a.into_iter().zip(b).zip(c);
     all.map(|((a, b), c)| majority([a, b, c])).collect()
+}
+
+/// Returns the number of components around the start of a ray, or one around it that touches another;
+/// `None` if this is not clear. All components in the index are solid; `own` does not count. `depth` returns
+/// the number of components around one of them.
+fn depth_at(
+    index: &Bvh<FaceTriangle<FaceId>>,
+    ray: &Ray,
+    agreement: &Agreement,
+    own: usize,
+    touching: &[bool],
+    signs: &[f64],
+    depth: impl Fn(usize) -> Option<Result<usize, usize>>,
+) -> Option<Result<usize, usize>> {
+    let component = |triangle: &FaceTriangle<FaceId>| agreement.component(triangle.face);
+    let mut first = None;
+    index.first_hit_where(ray, f64::INFINITY, |triangle| {
+        let is_other = component(triangle) != own;
+        if is_other {
+            first = Some(*triangle);
+        }
+        is_other
+    });
+    let Some(hit) = first else {
+        return Some(Ok(0));
+    };
+    let other = component(&hit);
+    if touching[other] {
+        let mut most = usize::MAX;
+        let around = odd_hits(index, ray, agreement, own, &mut most)?;
+        let outer = around.iter().find(|&&outer| touching[outer]);
+        return Some(outer.map_or(Ok(around.len()), |&outer| Err(outer)));
+    }
+    let sign = match agreement.reverse[hit.face.index()] {
+        true => -signs[other],
+        false => signs[other],
+    };
+    let leaves = sign * hit.normal().dot(ray.direction());
+    let depth = depth(other).filter(|_| leaves != 0.0)?;
+    Some(depth.map(|depth| depth + usize::from(leaves > 0.0)))
 }
 
 /// Returns the value that at least two of three have.
@@ -467,47 +549,60 @@ fn majority<T: PartialEq>([a, b, c]: [Option<T>; 3]) -> Option<T> {
     }
 }
 
-/// Returns the other components that a ray hits an odd number of times, ascending.
+/// Returns the other components that a ray hits an odd number of times, ascending; `None` if these are more
+/// than `most` hits. Subtracts the hits from `most`.
 fn odd_hits(
     index: &Bvh<FaceTriangle<FaceId>>,
     ray: &Ray,
     agreement: &Agreement,
     own: usize,
-) -> Vec<usize> {
+    most: &mut usize,
+) -> Option<Vec<usize>> {
     let mut hits: Vec<usize> = Vec::new();
-    index.for_each_hit(ray, f64::INFINITY, |hit| {
-        hits.push(agreement.component(hit.face));
+    // A hit that is accepted ends the search behind it.
+    let end = index.first_hit_where(ray, f64::INFINITY, |triangle| {
+        hits.push(agreement.component(triangle.face));
+        let left = most.checked_sub(1);
+        *most = left.unwrap_or(0);
+        left.is_none()
     });
+    if end.is_some() {
+        return None;
+    }
     hits.sort_unstable();
     let odd = hits
         .chunk_by(|a, b| a == b)
         .filter(|same| same.len() % 2 == 1);
-    odd.map(|same| same[0])
-        .filter(|&other| other != own)
-        .collect()
+    let odd = odd.map(|same| same[0]).filter(|&other| other != own);
+    Some(odd.collect())
 }
 
 /// Returns the other components that hide the outside from a triangle, and the part of the directions
-/// in which each does: a ray from the centre of the triangle leaves it.
+/// in which each does: a ray from the centre of the triangle leaves it. `None` if these are
+/// more than `most` hits.
 fn hiding(
     index: &Bvh<FaceTriangle<FaceId>>,
     sample: &FaceTriangle<FaceId>,
     agreement: &Agreement,
     directions: u32,
-) -> Vec<(usize, f64)> {
+    most: &mut usize,
+) -> Option<Vec<(usize, f64)>> {
     let inner = agreement.component(sample.face);
-    let centre = sample.corners_f64().iter().sum::<DVec3>() / 3.0;
     let mut votes: Vec<usize> = Vec::new();
     for i in 0..directions {
-        let Ok(ray) = Ray::new(centre, direction(i, directions)) else {
+        let Ok(ray) = Ray::new(centre(sample), direction(i, directions)) else {
             continue;
         };
-        votes.extend(odd_hits(index, &ray, agreement, inner));
+        votes.extend(odd_hits(index, &ray, agreement, inner, most)?);
     }
     votes.sort_unstable();
     let parts = votes.chunk_by(|a, b| a == b);
     let part = |same: &[usize]| same.len() as f64 / f64::from(directions);
-    parts.map(|same| (same[0], part(same))).collect()
+    Some(parts.map(|same| (same[0], part(same))).collect())
+}
+
+fn centre(triangle: &FaceTriangle<FaceId>) -> DVec3 {
+    triangle.corners_f64().iter().sum::<DVec3>() / 3.0
 }
 
 /// Returns direction `i` of `n` that are spread evenly: a spiral of golden angles (Vogel 1979), turned

@@ -466,3 +466,26 @@ fn nested_open_parts_face_away_from_the_solid_or_are_undecided() {
         assert_eq!((long.reversed.is_empty(), long.undecided), (inward, vec![]));
     }
 }
+
+/// An open part among nested solids changes nothing for them. Among very many open parts, it is undecided
+/// which are around a part.
+#[test]
+fn many_open_parts_are_undecided() {
+    let shells = |count: u32, is_open: &dyn Fn(u32) -> bool| {
+        let shells = (1..=count).map(|i| {
+            let shell = cube(i as f32, [0.0; 3], (count - i) % 2 == 1);
+            without(&shell, |f| is_open(i) && f == 0)
+        });
+        together(&shells.collect::<Vec<_>>())
+    };
+    let mesh = shells(300, &|i| i == 1);
+    let turned = with_reversed(&mesh, |f| f % 3 == 0);
+    let oriented = outward_all(&turned);
+    assert_eq!((oriented.polygons, oriented.undecided), (mesh, vec![]));
+    for (count, are_many) in [(30, false), (300, true)] {
+        let undecided = outward_all(&shells(count, &|_| true)).undecided;
+        let is_many = |part: &Undecided| part.reason == UndecidedReason::ManyAround;
+        assert!(!undecided.is_empty());
+        assert_eq!(undecided.iter().any(is_many), are_many);
+    }
+}
