@@ -27,7 +27,7 @@ use minimum_area::minimum_area_triangulation;
 /// the mesh: the outer boundary of a flat part is one, and so are the sides of a face that
 /// shares no edge, and a hole with another part of the mesh in it. Faces lie on triangles if they are
 /// nearly parallel to them, within 0.005 of the mean length of the hole's edges. A hole also remains
-/// if so many faces are near its triangles that this is not known.
+/// if this is not known, because very many faces are near its triangles.
 ///
 /// Holes are filled in the order of their area. A hole whose triangles would lie on those of a
 /// smaller hole remains; if the triangles of two holes coincide, both remain.

@@ -97,8 +97,8 @@ pub enum UndecidedReason {
     PartlyInside(
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))] FaceId,
     ),
-    /// So many faces of open components are around the component that those that hide the outside
-    /// from it are not counted.
+    /// Very many faces of open components are around the component. Those that hide the outside from it
+    /// were not all counted.
     ManyAround,
 }
 

@@ -216,6 +216,9 @@ impl PolygonCutter {
     ///   no such triangles. It is cut nevertheless, with as little area turned over or overlapping as
     ///   was found. If this is at most a millionth of the area, the polygon does not count as crossing:
     ///   where it touches itself, rounded coordinates cross.
+    /// - The number of corners and sides that tests look at is limited, to 50 million and 300 for each
+    ///   corner. If this is not enough, the polygon counts as crossing unless the triangles that were
+    ///   found are right.
     ///
     /// A polygon that is not planar is projected along the axis nearest to its Newell normal. If it
     /// crosses itself there, it is projected along the normal itself. Signs of areas are exact.
@@ -226,7 +229,8 @@ impl PolygonCutter {
     ///
     /// # Algorithm
     ///
-    /// Ears are clipped (Meisters 1975), the one with the best shape first. If a triangle of the
+    /// A polygon of 32 or more corners is divided where it touches itself in corners, if the parts lie
+    /// beside each other. Ears are clipped (Meisters 1975), the one with the best shape first. If a triangle of the
     /// result is turned over, the polygon is not simple, and its ears are clipped by rules for
     /// polygons that touch themselves. If this fails, too, and the polygon has at most 256 corners,
     /// all triangulations are compared by dynamic programming (Klincsek 1980).
@@ -234,8 +238,8 @@ impl PolygonCutter {
     /// # Complexity
     ///
     /// O(n log n) time for most polygons of `n` corners: a test of an ear looks only at corners near it. Up
-    /// to O(n²) if very many long triangles cross each other, and O(n³) for at most 256 corners that ear
-    /// clipping does not solve.
+    /// to O(n²) if very many long triangles cross each other, until the limit of the tests, then O(n). O(n³)
+    /// for at most 256 corners that ear clipping does not solve.
     pub fn cut(
         &mut self,
         corners: impl IntoIterator<Item = DVec3>,
@@ -548,6 +552,26 @@ fn convex_quad(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Two helices, one of them backwards, as one polygon: in a plane, it crosses itself nearly everywhere.
+    #[test]
+    fn tests_of_a_polygon_that_crosses_itself_everywhere_end() {
+        let turn = |i: u32, radius: f64| {
+            let angle = 0.1 * f64::from(i);
+            DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.01 * angle)
+        };
+        let there = (0..8000).map(|i| turn(i, 1.0));
+        let back = (0..8000).rev().map(|i| turn(i, 1.1));
+        let mut cutter = PolygonCutter::default();
+        let cut = cutter.cut(there.chain(back), |_, _| false);
+        assert_eq!((cut.triangles.len(), cut.is_crossing), (15_998, true));
+        assert!(cutter.ears.is_exhausted());
+        // The next polygon starts anew.
+        let square = [[0, 0], [2, 0], [2, 1], [1, 2], [0, 1]];
+        let at = |[x, y]: [i32; 2]| DVec3::new(f64::from(x), f64::from(y), 0.0);
+        assert!(!cutter.cut(square.map(at), |_, _| false).is_crossing);
+        assert!(!cutter.ears.is_exhausted());
+    }
 
     /// Quads around one point, at which the polygon touches itself as often. Every other one has a hole that
     /// touches it in another corner.

@@ -261,7 +261,7 @@ fn after_name<'a, W: Iterator<Item = &'a [u8]> + Clone>(expect: &Expect, mut res
         let word = rest.next()?;
         let is_in_solid = matches!(expect, Expect::FacetOrEnd);
         if !is_in_solid && is(word, "solid") {
-            // Without a facet after this word, there is none after the others.
+            // If no facet follows this `solid`, none follows the later ones.
             return after_name(&Expect::FacetOrEnd, rest).map(|_| here);
         }
         let mut next = rest.clone();

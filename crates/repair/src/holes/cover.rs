@@ -28,14 +28,14 @@ const FINE_EDGES: f64 = 64.0;
 const MOST_COARSE: f64 = 6.0;
 /// A part of a patch is cut if more items than this lie on it.
 const MOST_NEAR: usize = 48;
-/// A part is cut further if more items than this lie on it, and then compared with only so many: there are
-/// more at a vertex of very many faces.
+/// A part is cut further if more items than this lie on it, and of the parts that result, only this number is
+/// looked for: there are more at a vertex of very many faces.
 const MOST_AT_PART: usize = 256;
 /// How many times shorter those parts are.
 const CROWDED_PARTS: f64 = 16.0;
-/// A part is not cut if items lie on it in at least so many layers.
+/// A part is not cut if the items on it have this many times its area, or more.
 const MOST_LAYERS: f64 = 16.0;
-/// A part is compared with at most so many items that may lie on it.
+/// The most items that a part is compared with.
 const MOST_COMPARED: usize = 4096;
 /// An item lies on a part if it covers more than this of it. A smaller area is only a rounding error.
 const ROUNDING: f64 = 1e-9;

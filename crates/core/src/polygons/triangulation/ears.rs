@@ -11,9 +11,8 @@ use super::regions::{Obstacle, Obstacles, Winding};
 /// Maximum number of full tests of all corners, beyond those after the corners have halved.
 const FULL_TESTS: usize = 64;
 
-/// The corners and sides that tests look at, for one polygon: at most this, and this for each corner. Then
-/// all tests are left out. Most polygons need a few for each corner; where very many long triangles
-/// cross each other, no cut is right.
+/// The corners and sides that the tests of one polygon may look at: this number, and more for each corner.
+/// Then all tests are left out. Where very many long triangles cross each other, no cut is right anyway.
 const MOST_VISITS: usize = 50_000_000;
 const MOST_VISITS_OF_CORNER: usize = 300;
 

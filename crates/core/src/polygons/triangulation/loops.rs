@@ -94,6 +94,8 @@ fn walk(points: &[DVec2], with_holes: &mut FxHashSet<Key>) -> Option<Loops> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     fn polygon(corners: &[[i32; 2]]) -> Vec<DVec2> {
@@ -120,6 +122,19 @@ mod tests {
         assert_eq!(sizes, [3, 3]);
         let triangles = parts.iter().map(|part| part.len() - 2).sum::<usize>() + joints.len();
         assert_eq!(triangles, petals.len() - 2);
+        // The sides of the parts and of the joints inside cancel: those of the polygon remain.
+        let mut sides = BTreeMap::new();
+        let joints = joints.into_iter().map(Vec::from);
+        for part in parts.into_iter().chain(joints) {
+            for (&from, &to) in part.iter().zip(part.iter().cycle().skip(1)) {
+                *sides.entry((from, to)).or_insert(0) += 1;
+                *sides.entry((to, from)).or_insert(0) -= 1;
+            }
+        }
+        sides.retain(|_, count| *count > 0);
+        let n = petals.len();
+        let expected = (0..n).map(|i| ((i, (i + 1) % n), 1));
+        assert_eq!(sides, expected.collect());
         // A square with a square hole that touches it in a corner.
         let hole = [
             [0, 0],
