@@ -176,11 +176,16 @@ mod tests {
         refused: u64,
         /// Whether a full run causes a panic.
         samples_only: bool,
+        /// Whether all runs are full runs.
+        whole_only: bool,
     }
 
     impl TimedBackend for Fixed {
         fn name(&self) -> &str {
             "fixed"
+        }
+        fn can_sample(&self) -> bool {
+            !self.whole_only
         }
         fn costs(&self) -> [QueryCost; 9] {
             [QueryCost::Local; 9]
@@ -194,7 +199,8 @@ mod tests {
         fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
             // A sample has half the checksum of a full run.
             assert!(!self.samples_only || job.sample.is_some(), "run in full");
-            let part = if job.sample.is_some() { 0.5 } else { 1.0 };
+            let is_sample = job.sample.is_some() && !self.whole_only;
+            let part = if is_sample { 0.5 } else { 1.0 };
             let outcome = Outcome {
                 checksum: self.checksum * part,
                 elements: 10 - self.merged as u64,
@@ -210,21 +216,27 @@ mod tests {
     }
 
     fn agreements_with_refusals(subjects: &[(f64, usize, bool, u64)]) -> Vec<Agreement> {
+        let subjects = subjects.iter();
+        let subjects = subjects.map(|&(checksum, merged, samples_only, refused)| Fixed {
+            checksum,
+            merged,
+            refused,
+            samples_only,
+            whole_only: false,
+        });
+        agreements_of(subjects.collect())
+    }
+
+    /// Runs each subject in full, or on a sample if that is all that it may do.
+    fn agreements_of(subjects: Vec<Fixed>) -> Vec<Agreement> {
         let clock = MachineClock::start();
         let (mut boxed, mut entries): (Vec<Box<dyn TimedBackend>>, Vec<Entry>) = Default::default();
-        for (i, &(checksum, merged, sampled, refused)) in subjects.iter().enumerate() {
+        for (i, mut subject) in subjects.into_iter().enumerate() {
             let mut entry = Entry::new(i, Operation::Boundary);
-            entry.job.sample = sampled.then_some(ElementSample {
+            entry.job.sample = subject.samples_only.then_some(ElementSample {
                 scanned: [true; 3],
                 size: 4,
             });
-            let samples_only = sampled;
-            let mut subject = Fixed {
-                checksum,
-                merged,
-                refused,
-                samples_only,
-            };
             entry.outcome = subject
                 .run(&entry.job, &Series::once(&clock).with_result())
                 .outcome;
@@ -302,6 +314,26 @@ mod tests {
             agreements(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
             [Merged, Same, Same]
         );
+    }
+
+    /// Relation tables run in full, and other backends of a mesh with very large faces on samples.
+    #[test]
+    fn backends_that_always_run_in_full_are_not_compared_with_samples() {
+        use Agreement::{Mismatch, Same, Unchecked};
+        let backend = |checksum, samples_only, whole_only| Fixed {
+            checksum,
+            merged: 0,
+            refused: 0,
+            samples_only,
+            whole_only,
+        };
+        let whole = || backend(8.0, false, true);
+        let sampled = |checksum| backend(checksum, true, false);
+        assert_eq!(agreements_of(vec![whole(), sampled(8.0)]), [Unchecked; 2]);
+        let all = vec![whole(), sampled(8.0), sampled(8.0)];
+        assert_eq!(agreements_of(all), [Unchecked, Same, Same]);
+        let all = vec![whole(), backend(9.0, false, false)];
+        assert_eq!(agreements_of(all), [Mismatch; 2]);
     }
 
     #[test]
