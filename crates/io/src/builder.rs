@@ -277,29 +277,44 @@ impl<'a> MeshBuilder<'a> {
         pushed.map_err(|_| self.too_many("corners", place))
     }
 
-    /// Counts the bytes after the mesh, except white space.
+    /// Counts what follows the mesh: the bytes, or in a text file the lines, except white space and
+    /// comments.
     pub(crate) fn note_trailing(&mut self, source: &mut ByteSource<'_>) -> Result<(), ReadError> {
-        let mut line = source.line_count() + 1;
+        let is_text = self.format.is_text();
+        let is_comment = |byte| byte == b'#' && self.format == Format::Off;
+        let mut line = source.line_count().saturating_add(1);
+        let mut is_blank = true;
+        let mut before = 0;
         loop {
             let offset = source.offset();
             let bytes = source
                 .fill(1)
                 .map_err(|e| self.read_error(Place::Byte(offset), e))?;
-            let (length, is_text) = (bytes.len(), self.format.is_text());
+            let length = bytes.len();
             if length == 0 {
                 return Ok(());
             }
-            let is_content = |byte: &u8| !byte.is_ascii_whitespace();
-            if let Some(first) = bytes.iter().position(is_content) {
-                let count = bytes.iter().filter(|byte| is_content(byte)).count();
-                let place = match is_text {
-                    true => Place::Line(line + newlines(&bytes[..first])),
-                    false => Place::Byte(offset + first as u64),
-                };
-                self.notices
-                    .add_many(IgnoredKind::Trailing, count as u64, place);
+            for (&byte, offset) in bytes.iter().zip(offset..) {
+                match std::mem::replace(&mut before, byte) {
+                    b'\r' if byte == b'\n' => continue,
+                    _ if matches!(byte, b'\n' | b'\r') => {
+                        line = line.saturating_add(1);
+                        is_blank = true;
+                    }
+                    _ if byte.is_ascii_whitespace() => {}
+                    _ if !is_text => {
+                        let place = Place::Byte(offset);
+                        self.notices.add(IgnoredKind::Trailing, place);
+                    }
+                    _ => {
+                        if is_blank && !is_comment(byte) {
+                            let place = Place::Line(line);
+                            self.notices.add(IgnoredKind::TrailingLines, place);
+                        }
+                        is_blank = false;
+                    }
+                }
             }
-            line += newlines(bytes);
             source.advance(length);
         }
     }
@@ -381,12 +396,6 @@ impl<'a> MeshBuilder<'a> {
             None => Ok(()),
         }
     }
-}
-
-/// Returns the number of line breaks.
-fn newlines(bytes: &[u8]) -> u32 {
-    let breaks = bytes.iter().filter(|byte| **byte == b'\n');
-    breaks.count() as u32 // at most as many as in a buffer
 }
 
 /// Returns the error of the first of three coordinates that is not finite.

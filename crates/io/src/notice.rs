@@ -26,15 +26,18 @@ pub enum IgnoredKind {
     Elements,
     /// Triangles of a strip that have no area because they only continue it.
     StripJoints,
-    /// Corners at the end of a list of triangles of glTF that are too few for a triangle.
+    /// Corners that are too few for a triangle: at the end of a list of triangles of glTF, and in a
+    /// strip of PLY.
     IncompleteTriangles,
     /// Corners of faces that repeat the corner next to them. The face keeps its other corners.
     RepeatedCorners,
     /// Polygons that name a vertex twice, not only in neighbouring corners: an outline with a bridge
     /// to a hole, or parts that meet in a vertex. Each was cut into triangles, which have its area.
     CutFaces,
-    /// Bytes or lines after the end of the mesh.
+    /// Bytes after the end of the mesh in a binary file.
     Trailing,
+    /// Lines after the end of the mesh in a text file, except blank lines and comments.
+    TrailingLines,
     /// Solids of ASCII STL that do not end in `endsolid`. The file may be cut off between two
     /// facets.
     MissingEnds,
@@ -158,6 +161,7 @@ impl IgnoredKind {
                 "faces that name a vertex twice",
             ],
             Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
+            Self::TrailingLines => ["line after the mesh", "lines after the mesh"],
             Self::MissingEnds => ["missing `endsolid`", "missing `endsolid` lines"],
             Self::SmallFacetCount => ["number of facets", "numbers of facets"],
             Self::OtherPrimitives => [
@@ -208,6 +212,8 @@ pub struct Notice {
     pub first: Place,
     /// Names in the file, at most [`MAX_NAMES`](Self::MAX_NAMES). Empty if the kind has no names.
     pub names: Vec<String>,
+    /// Whether the file has further names, which `names` leaves out.
+    pub has_more_names: bool,
 }
 
 impl Notice {
@@ -229,6 +235,7 @@ impl fmt::Display for Notice {
         }
         if !self.names.is_empty() {
             write!(f, ": {}", self.names.join(", "))?;
+            f.write_str(if self.has_more_names { ", …" } else { "" })?;
         }
         match self.count {
             1 => write!(f, " ({first})")?,
@@ -264,8 +271,12 @@ impl Notices {
         let notice = self.entry(kind, place);
         notice.count = notice.count.saturating_add(count);
         let name = shortened(name);
-        if notice.names.len() < Notice::MAX_NAMES && !notice.names.contains(&name) {
-            notice.names.push(name);
+        if notice.names.contains(&name) {
+            return;
+        }
+        match notice.names.len() < Notice::MAX_NAMES {
+            true => notice.names.push(name),
+            false => notice.has_more_names = true,
         }
     }
 
@@ -277,6 +288,7 @@ impl Notices {
                 count: 0,
                 first,
                 names: Vec::new(),
+                has_more_names: false,
             });
             self.0.len() - 1
         });

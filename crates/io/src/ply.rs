@@ -96,9 +96,16 @@ impl Reading<'_, '_> {
         self.builder.push_face(&rows, place)
     }
 
-    /// Adds the triangles of strips. Every other triangle is turned, so that all face one side.
+    /// Adds the triangles of strips. Every other triangle is turned, so that all face one side. One or
+    /// two indices alone are no strip and are counted.
     fn add_strips(&mut self, place: Place) -> Result<(), ReadError> {
         for strip in self.corners.split(|&index| index == -1) {
+            if strip.len() < 3 {
+                let kind = IgnoredKind::IncompleteTriangles;
+                self.builder
+                    .notices
+                    .add_many(kind, strip.len() as u64, place);
+            }
             for (number, triangle) in strip.windows(3).enumerate() {
                 let [a, b, c] = match number % 2 {
                     0 => [0, 1, 2],

@@ -87,11 +87,17 @@ fn faults_of_off_are_named_with_their_lines() {
         &format!("{two}3 0 1 2"),
         "4: face names vertex 2, but there are 2 vertices: correct the index",
     );
-    let mesh = read(format!("OFF 2 0 0\n{two}\n 3 0 1 2\n"));
-    assert_eq!(
-        notices(&mesh),
-        ["ignored 4 bytes after the mesh (first at line 5)"]
-    );
+    for (rest, notice) in [
+        ("\n 3 0 1 2\n", "ignored 1 line after the mesh (line 5)"),
+        (
+            "# end\r\n \r\nmore # text\rand # more",
+            "ignored 2 lines after the mesh (first at line 6)",
+        ),
+        ("\n# 3 0 1\n \t", ""),
+    ] {
+        let mesh = read(format!("OFF 2 0 0\n{two}{rest}"));
+        assert_eq!(notices(&mesh).concat(), notice, "{rest:?}");
+    }
 }
 
 #[test]

@@ -135,6 +135,54 @@ fn triangle_strips_turn_every_other_triangle() {
 }
 
 #[test]
+fn indices_that_are_too_few_for_a_strip_are_named() {
+    let strips = |indices: &str| {
+        let count = indices.split(' ').count();
+        let text = PLY
+            .replace("element face 1", "element tristrips 1")
+            .replace("3 0 1 2", &format!("{count} {indices}"));
+        read(text)
+    };
+    let triangle = [[0, 1, 2]];
+    for (indices, notice) in [
+        ("0 1 2 -1", ""),
+        ("-1 -1 0 1 2", ""),
+        (
+            "0 1 2 -1 2",
+            "ignored 1 corner of an incomplete triangle (line 13)",
+        ),
+        (
+            "0 1 -1 0 1 2 -1 2",
+            "ignored 3 corners of incomplete triangles (first at line 13)",
+        ),
+    ] {
+        let mesh = strips(indices);
+        assert_eq!(faces(&mesh), triangle, "{indices}");
+        assert_eq!(notices(&mesh).concat(), notice, "{indices}");
+    }
+}
+
+#[test]
+fn names_that_are_left_out_show_as_dots() {
+    for (count, shown) in [
+        (7, "p6"),
+        (8, "p6, p7"),
+        (9, "p6, p7, …"),
+        (20, "p6, p7, …"),
+    ] {
+        let properties: String = (0..count).map(|i| format!("property int p{i}\n")).collect();
+        let text = PLY
+            .replace("end_header", &format!("{properties}end_header"))
+            .replace("3 0 1 2", &format!("3 0 1 2{}", " 0".repeat(count)));
+        let notice = notices(&read(text)).concat();
+        assert!(
+            notice.ends_with(&format!("{shown} (first at line 9)")),
+            "{notice}"
+        );
+    }
+}
+
+#[test]
 fn faults_of_ply_headers_are_named_with_their_lines() {
     let refused = |from: &str, to: &str, message: &str| {
         assert!(PLY.contains(from), "{from}");
