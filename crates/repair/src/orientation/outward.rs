@@ -1,13 +1,16 @@
 //! The outside of each component.
 
+mod around;
+
 use std::ops::{ControlFlow, Range};
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId, row};
 use sixfold_spatial::{
-    Bounds, Bvh, FaceTriangle, Item, NamedBox, Ray, SpatialIndex, SurfaceQueries, TurnedBox,
-    triangles_touch,
+    Bounds, Bvh, FaceTriangle, Item, NamedBox, SpatialIndex, TurnedBox, triangles_touch,
 };
+
+use around::{Solids, Triangles};
 
 use super::{Agreement, UndecidedReason};
 
@@ -18,17 +21,6 @@ const CLEAR_PART: f64 = 0.5;
 const CLEAR_VOLUME: f64 = 1e-3;
 /// The least part of a closed component. A smaller volume is only a rounding error.
 const ROUNDING: f64 = 1e-9;
-
-/// The part of all directions in which an open component must hide the outside, so that what it hides
-/// counts as inside of it. A solid hides it in all directions.
-const ENCLOSED: f64 = 0.9;
-/// The number of directions in which the first solid component is looked for: the answer of most of them
-/// avoids errors at edges.
-const FEW_DIRECTIONS: u32 = 3;
-/// The number of directions in which other components are looked for if some are open.
-const DIRECTIONS: u32 = 64;
-/// The most faces of open components that may hide the outside from a component, in all directions together.
-const MOST_HIDING: usize = 2048;
 
 /// Returns for each component whether all of its faces are to be reversed after those in
 /// [`Agreement::reverse`], so that it faces outward. `first` has the first face of each.
@@ -201,14 +193,9 @@ fn depths(
         None => (Some(&index), None),
         Some((solids, open)) => (solids.as_ref(), open.as_ref()),
     };
-    let solids = solids.map(|index| Solids {
-        depths: depths_by_first_hits(index, agreement, &touching, signs),
-        index,
-        agreement,
-        touching: &touching,
-        signs,
-        directions: if any_open { DIRECTIONS } else { FEW_DIRECTIONS },
-    });
+    let triangles = |index| Triangles { index, agreement };
+    let solids = solids.map(|index| Solids::new(triangles(index), &touching, signs, any_open));
+    let open = open.map(triangles);
     for (inner, sample) in sample.iter().enumerate() {
         let (Some(sample), Ok(_)) = (sample, &depths[inner]) else {
             continue;
@@ -217,10 +204,8 @@ fn depths(
             (Some(inner), Some(outer)) => outer.union(inner) == outer && inner != outer,
             _ => false,
         };
-        let open = match open {
-            Some(open) => open_around(open, sample, agreement, is_around),
-            None => Ok(0),
-        };
+        let open = open.as_ref();
+        let open = open.map_or(Ok(0), |open| open.open_around(sample, is_around));
         depths[inner] = match open {
             Ok(open) => solids
                 .as_ref()
@@ -232,88 +217,6 @@ fn depths(
         };
     }
     depths
-}
-
-/// Returns the number of open components around a component of which `sample` is a triangle; or one that is
-/// only partly around it; or `None` if there are too many. `is_around` returns whether the box of a
-/// component contains that of the inner one, and is larger.
-fn open_around(
-    index: &Bvh<FaceTriangle<FaceId>>,
-    sample: &FaceTriangle<FaceId>,
-    agreement: &Agreement,
-    is_around: impl Fn(usize) -> bool,
-) -> Result<usize, Option<usize>> {
-    let mut most = MOST_HIDING;
-    let hiding = hiding(index, sample, agreement, DIRECTIONS, &mut most).ok_or(None)?;
-    // Several open components, such as two halves, can be around it together.
-    let sum: f64 = hiding.iter().map(|(_, part)| part).sum();
-    let whole = sum.round();
-    if (sum - whole).abs() <= 1.0 - ENCLOSED {
-        return Ok(whole as usize);
-    }
-    let partly =
-        |&&(component, part): &&(usize, f64)| part > 1.0 - ENCLOSED && is_around(component);
-    match hiding.iter().find(partly) {
-        Some(&(component, _)) => Err(Some(component)),
-        None => Ok(0),
-    }
-}
-
-/// The solid components.
-struct Solids<'a> {
-    index: &'a Bvh<FaceTriangle<FaceId>>,
-    agreement: &'a Agreement,
-    touching: &'a [bool],
-    signs: &'a [f64],
-    /// The number of directions that decide if the first hits do not.
-    directions: u32,
-    /// By component: the number of components around it, or one around it that touches another.
-    depths: Vec<Option<Result<usize, usize>>>,
-}
-
-impl Solids<'_> {
-    /// Returns the number of solid components around a component of which `sample` is a triangle, or one
-    /// around it that touches another.
-    fn around(&self, sample: &FaceTriangle<FaceId>) -> Result<usize, usize> {
-        let own = self.agreement.component(sample.face);
-        self.depths[own]
-            .or_else(|| majority([0, 1, 2].map(|i| self.along(sample, i))))
-            .unwrap_or_else(|| self.by_all_hits(sample))
-    }
-
-    fn along(&self, sample: &FaceTriangle<FaceId>, i: u32) -> Option<Result<usize, usize>> {
-        let ray = Ray::new(centre(sample), direction(i, FEW_DIRECTIONS)).ok()?;
-        let own = self.agreement.component(sample.face);
-        depth_at(
-            self.index,
-            &ray,
-            self.agreement,
-            own,
-            self.touching,
-            self.signs,
-            |c| self.depths[c],
-        )
-    }
-
-    fn by_all_hits(&self, sample: &FaceTriangle<FaceId>) -> Result<usize, usize> {
-        let mut most = usize::MAX;
-        let hiding = hiding(
-            self.index,
-            sample,
-            self.agreement,
-            self.directions,
-            &mut most,
-        );
-        let hiding = hiding.unwrap_or_default().into_iter();
-        let around: Vec<usize> = hiding
-            .filter(|(_, part)| *part > 0.5)
-            .map(|(c, _)| c)
-            .collect();
-        match around.iter().find(|&&outer| self.touching[outer]) {
-            Some(&outer) => Err(outer),
-            None => Ok(around.len()),
-        }
-    }
 }
 
 /// Returns the box of each solid or open component; `None` for the others, among them those with a coordinate
@@ -447,175 +350,6 @@ fn contacts(
         }
     }
     pairs
-}
-
-/// Returns the number of components around each solid one, or one around it that touches another; `None`
-/// if this is not clear. All components are solid.
-///
-/// ```text
-///   ┌───────────────┐      From the end of a component in one direction, a ray leaves it. If it leaves the
-///   │ ┌───┐   ┌───┐ │ →    component that it hits first, this one is around it, and is one of those around
-///   │ │ c ├ → │ d │ ├ →    it more than are around the other. If it enters it, both have the same around
-///   │ └───┘   └───┘ │      them. The end of the other component is farther away, so its number is known.
-///   └───────────────┘
-/// ```
-///
-/// Most of a few directions decide. O(n log n) for components with n triangles. A component that touches
-/// another may be partly inside, so all hits count behind it.
-fn depths_by_first_hits(
-    index: &Bvh<FaceTriangle<FaceId>>,
-    agreement: &Agreement,
-    touching: &[bool],
-    signs: &[f64],
-) -> Vec<Option<Result<usize, usize>>> {
-    let component = |triangle: &FaceTriangle<FaceId>| agreement.component(triangle.face);
-    let in_direction = |i: u32| {
-        let along = DVec3::from_array(direction(i, FEW_DIRECTIONS));
-        let mut ends: Vec<Option<(f64, DVec3)>> = vec![None; touching.len()];
-        for triangle in index.items() {
-            let end = &mut ends[component(triangle)];
-            for corner in triangle.corners_f64() {
-                let place = along.dot(corner);
-                if end.is_none_or(|(farthest, _)| place > farthest) {
-                    *end = Some((place, corner));
-                }
-            }
-        }
-        let mut order: Vec<usize> = (0..ends.len()).filter(|&c| ends[c].is_some()).collect();
-        order.sort_by(|&a, &b| {
-            let [a, b] = [a, b].map(|c| ends[c].map_or(0.0, |(place, _)| place));
-            b.total_cmp(&a)
-        });
-        let mut depths: Vec<Option<Result<usize, usize>>> = vec![None; ends.len()];
-        for own in order.into_iter().filter(|&own| !touching[own]) {
-            let ray = ends[own].and_then(|(_, end)| Ray::new(end, along).ok());
-            let Some(ray) = ray else {
-                continue;
-            };
-            depths[own] = depth_at(index, &ray, agreement, own, touching, signs, |c| depths[c]);
-        }
-        depths
-    };
-    let [a, b, c] = [0, 1, 2].map(in_direction);
-    let all = a.into_iter().zip(b).zip(c);
-    all.map(|((a, b), c)| majority([a, b, c])).collect()
-}
-
-/// Returns the number of components around the start of a ray, or one around it that touches another;
-/// `None` if this is not clear. All components in the index are solid; `own` does not count. `depth` returns
-/// the number of components around one of them.
-fn depth_at(
-    index: &Bvh<FaceTriangle<FaceId>>,
-    ray: &Ray,
-    agreement: &Agreement,
-    own: usize,
-    touching: &[bool],
-    signs: &[f64],
-    depth: impl Fn(usize) -> Option<Result<usize, usize>>,
-) -> Option<Result<usize, usize>> {
-    let component = |triangle: &FaceTriangle<FaceId>| agreement.component(triangle.face);
-    let mut first = None;
-    index.first_hit_where(ray, f64::INFINITY, |triangle| {
-        let is_other = component(triangle) != own;
-        if is_other {
-            first = Some(*triangle);
-        }
-        is_other
-    });
-    let Some(hit) = first else {
-        return Some(Ok(0));
-    };
-    let other = component(&hit);
-    if touching[other] {
-        let mut most = usize::MAX;
-        let around = odd_hits(index, ray, agreement, own, &mut most)?;
-        let outer = around.iter().find(|&&outer| touching[outer]);
-        return Some(outer.map_or(Ok(around.len()), |&outer| Err(outer)));
-    }
-    let sign = match agreement.reverse[hit.face.index()] {
-        true => -signs[other],
-        false => signs[other],
-    };
-    let leaves = sign * hit.normal().dot(ray.direction());
-    let depth = depth(other).filter(|_| leaves != 0.0)?;
-    Some(depth.map(|depth| depth + usize::from(leaves > 0.0)))
-}
-
-/// Returns the value that at least two of three have.
-fn majority<T: PartialEq>([a, b, c]: [Option<T>; 3]) -> Option<T> {
-    match a == b || a == c {
-        true => a,
-        false => b.filter(|b| c.as_ref() == Some(b)),
-    }
-}
-
-/// Returns the other components that a ray hits an odd number of times, ascending; `None` if these are more
-/// than `most` hits. Subtracts the hits from `most`.
-fn odd_hits(
-    index: &Bvh<FaceTriangle<FaceId>>,
-    ray: &Ray,
-    agreement: &Agreement,
-    own: usize,
-    most: &mut usize,
-) -> Option<Vec<usize>> {
-    let mut hits: Vec<usize> = Vec::new();
-    // A hit that is accepted ends the search behind it.
-    let end = index.first_hit_where(ray, f64::INFINITY, |triangle| {
-        hits.push(agreement.component(triangle.face));
-        let left = most.checked_sub(1);
-        *most = left.unwrap_or(0);
-        left.is_none()
-    });
-    if end.is_some() {
-        return None;
-    }
-    hits.sort_unstable();
-    let odd = hits
-        .chunk_by(|a, b| a == b)
-        .filter(|same| same.len() % 2 == 1);
-    let odd = odd.map(|same| same[0]).filter(|&other| other != own);
-    Some(odd.collect())
-}
-
-/// Returns the other components that hide the outside from a triangle, and the part of the directions
-/// in which each does: a ray from the centre of the triangle leaves it. `None` if these are
-/// more than `most` hits.
-fn hiding(
-    index: &Bvh<FaceTriangle<FaceId>>,
-    sample: &FaceTriangle<FaceId>,
-    agreement: &Agreement,
-    directions: u32,
-    most: &mut usize,
-) -> Option<Vec<(usize, f64)>> {
-    let inner = agreement.component(sample.face);
-    let mut votes: Vec<usize> = Vec::new();
-    for i in 0..directions {
-        let Ok(ray) = Ray::new(centre(sample), direction(i, directions)) else {
-            continue;
-        };
-        votes.extend(odd_hits(index, &ray, agreement, inner, most)?);
-    }
-    votes.sort_unstable();
-    let parts = votes.chunk_by(|a, b| a == b);
-    let part = |same: &[usize]| same.len() as f64 / f64::from(directions);
-    Some(parts.map(|same| (same[0], part(same))).collect())
-}
-
-fn centre(triangle: &FaceTriangle<FaceId>) -> DVec3 {
-    triangle.corners_f64().iter().sum::<DVec3>() / 3.0
-}
-
-/// Returns direction `i` of `n` that are spread evenly: a spiral of golden angles (Vogel 1979), turned
-/// so that no face of a usual mesh is parallel to one.
-fn direction(i: u32, n: u32) -> [f64; 3] {
-    const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
-    let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(n);
-    let (sin, cos) = (GOLDEN_ANGLE * f64::from(i) + 0.412_913_7).sin_cos();
-    let radius = (1.0 - z * z).sqrt();
-    let [x, y] = [radius * cos, radius * sin];
-    // A turn around an axis in general position.
-    let turn = DMat3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.9);
-    (turn * DVec3::new(x, y, z)).to_array()
 }
 
 #[cfg(test)]

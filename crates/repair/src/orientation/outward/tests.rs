@@ -55,42 +55,6 @@ fn is_around(shell: &PolygonMesh, point: Point) -> bool {
     angles.sum::<f64>().abs() > std::f64::consts::TAU
 }
 
-#[test]
-fn two_of_three_decide() {
-    let values = [None, Some(1), Some(2), Some(3)];
-    for (a, b, c) in values.iter().flat_map(|&a| {
-        let pairs = values.iter().flat_map(|&b| values.map(|c| (b, c)));
-        pairs.map(move |(b, c)| (a, b, c))
-    }) {
-        let has_two =
-            |value: &i32| [a, b, c].iter().filter(|&&one| one == Some(*value)).count() > 1;
-        assert_eq!(
-            majority([a, b, c]),
-            (1..4).find(has_two),
-            "{a:?} {b:?} {c:?}"
-        );
-    }
-}
-
-#[test]
-fn directions_are_spread_evenly() {
-    for (n, tolerance) in [(FEW_DIRECTIONS, 0.5), (DIRECTIONS, 0.02)] {
-        let directions: Vec<DVec3> = (0..n).map(|i| direction(i, n).into()).collect();
-        assert!(directions.iter().all(|d| (d.length() - 1.0).abs() < 1e-12));
-        let mean = |of: &dyn Fn(DVec3) -> DVec3| {
-            directions.iter().map(|&d| of(d)).sum::<DVec3>() / f64::from(n)
-        };
-        assert!(mean(&|d| d).length() < tolerance);
-        assert!((mean(&|d| d * d) - DVec3::splat(1.0 / 3.0)).length() < tolerance);
-        let apart = |i: usize| {
-            directions[..i]
-                .iter()
-                .all(|d| d.distance(directions[i]) > 0.3)
-        };
-        assert!((0..directions.len()).all(apart));
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -188,7 +152,8 @@ proptest! {
             (touching[one], touching[other]) = (true, true);
         }
         prop_assert_eq!(&touching, &crossed);
-        let depths = depths_by_first_hits(&index, &agreement, &touching, &signs);
+        let triangles = Triangles { index: &index, agreement: &agreement };
+        let depths = Solids::new(triangles, &touching, &signs, false).depths;
         for inner in (0..shells.len()).filter(|&inner| !touching[inner]) {
             let around = around(inner);
             match depths[inner].expect("rays avoid edges") {
