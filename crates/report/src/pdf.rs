@@ -424,6 +424,8 @@ mod tests {
             canvas.dashed([5.0, 6.0], [7.0, 8.0], TEXT_COLOUR, 0.5);
         });
         canvas.filled(&[[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]], "#000000");
+        canvas.circle([30.0, 20.0], 4.0, "#000000");
+        canvas.dots([[8.0, 9.0]].into_iter(), 2.0, "#000000");
         let panels = [([10.0, 20.0], &canvas)];
         let pdf = file([50.0, 60.0], &panels, "").expect("a file");
         let content = streams(&pdf).concat();
@@ -431,7 +433,11 @@ mod tests {
             "1 0 0 -1 0 60 cm\n",
             "q\n1 0 0 1 10 20 cm\n1 2 3 4 re\n1 0 0.502 rg\nf\n",
             "5 6 m\n7 8 l\n0.09 0.094 0.102 RG\n0.5 w\n[4 3] 0 d\nS\n",
-            "1 1 m\n2 1 l\n2 2 l\n0 0 0 rg\nf\nQ",
+            "1 1 m\n2 1 l\n2 2 l\n0 0 0 rg\nf\n",
+            // Control points are 4 · 0.552285 from the ends of each quarter.
+            "34 20 m\n34 22.20914 32.20914 24 30 24 c\n27.79086 24 26 22.20914 26 20 c\n\
+             26 17.79086 27.79086 16 30 16 c\n32.20914 16 34 17.79086 34 20 c\nh\n0 0 0 rg\nf\n",
+            "7 8 2 2 re\n0 0 0 rg\nf\nQ",
         ] {
             assert!(content.contains(part), "{part}: {content}");
         }

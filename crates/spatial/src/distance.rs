@@ -61,6 +61,20 @@ impl MeshDistance {
     pub fn largest(&self) -> f64 {
         self.forward.largest.max(self.backward.largest)
     }
+
+    fn scaled(self, factor: f64) -> Self {
+        let scaled = |side: OneSidedDistance| OneSidedDistance {
+            mean: factor * side.mean,
+            root_mean_square: factor * side.root_mean_square,
+            largest: factor * side.largest,
+            farthest: factor * side.farthest,
+            ..side
+        };
+        Self {
+            forward: scaled(self.forward),
+            backward: scaled(self.backward),
+        }
+    }
 }
 
 /// Measures the distance between the surfaces of two meshes, in both directions.
@@ -96,6 +110,20 @@ pub fn mesh_distance(
     second: &PolygonMesh,
     sampling: Sampling,
 ) -> Result<MeshDistance, DistanceError> {
+    let sizes = [first, second].map(largest_coordinate);
+    if let Some(factor) = unusual_scale(sizes[0].max(sizes[1])) {
+        let [first, second] = [first, second].map(|mesh| scaled(mesh, factor));
+        return Ok(distance_of_usual(&first, &second, sampling)?.scaled(1.0 / factor));
+    }
+    distance_of_usual(first, second, sampling)
+}
+
+/// Measures the distance of meshes whose coordinates are not so large or small that the index becomes slow.
+fn distance_of_usual(
+    first: &PolygonMesh,
+    second: &PolygonMesh,
+    sampling: Sampling,
+) -> Result<MeshDistance, DistanceError> {
     let [to_first, to_second] = [surface("first", first)?, surface("second", second)?];
     // The samples of thin triangles are off them by more than rounding.
     let is_same = first.positions() == second.positions() && first.faces() == second.faces();
@@ -108,6 +136,27 @@ pub fn mesh_distance(
         forward: one_sided("first", first, &to_second, sampling, rounding)?,
         backward: one_sided("second", second, &to_first, sampling, rounding)?,
     })
+}
+
+/// Returns the largest coordinate without its sign, of those that are finite.
+fn largest_coordinate(mesh: &PolygonMesh) -> f32 {
+    let largest = mesh.positions().iter().map(|p| p.abs().max_element());
+    largest.filter(|x| x.is_finite()).fold(0.0, f32::max)
+}
+
+/// Returns a power of two that brings coordinates up to `largest` near 1, if squares of them may leave the
+/// range of `f32`, in which the index has its bounds.
+fn unusual_scale(largest: f32) -> Option<f64> {
+    let is_usual = largest == 0.0 || (1e-12..1e15).contains(&largest);
+    (!is_usual).then(|| (-f64::from(largest).log2().floor()).exp2())
+}
+
+/// Returns the mesh with all positions multiplied by `factor`, a power of two.
+fn scaled(mesh: &PolygonMesh, factor: f64) -> PolygonMesh {
+    let positions = mesh.positions().iter();
+    let positions = positions.map(|p| (p.as_dvec3() * factor).as_vec3());
+    PolygonMesh::from_faces(positions.collect(), mesh.faces().clone())
+        .unwrap_or_else(|_| mesh.clone()) // unreachable: the mesh has as many vertices
 }
 
 /// Measures the distances from the surface of `from` to the surface in an index, as

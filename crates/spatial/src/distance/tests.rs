@@ -152,6 +152,43 @@ fn the_number_of_threads_does_not_change_the_result() {
 }
 
 #[test]
+fn the_unit_changes_neither_the_result_nor_the_work() {
+    let scaled = |mesh: &PolygonMesh, factor: f64| super::scaled(mesh, factor);
+    let cube = sixfold_shapes::cube();
+    let ball = sixfold_shapes::geodesic(3).expect("small");
+    let measure = |factor: f64| {
+        let [cube, ball] = [&cube, &ball].map(|mesh| scaled(mesh, factor));
+        let distance = mesh_distance(&cube, &ball, Sampling::default()).expect("faces");
+        distance.scaled(1.0 / factor)
+    };
+    let usual = measure(1.0);
+    // Squares of these coordinates are not numbers of `f32`.
+    for exponent in [-101, -100, -41, -39, 49, 51, 100, 127] {
+        assert_eq!(measure(2_f64.powi(exponent)), usual, "2^{exponent}");
+    }
+    // Numbers near the least one have few digits.
+    let least = measure(2_f64.powi(-140));
+    assert!(
+        (least.mean() / usual.mean() - 1.0).abs() < 1e-2,
+        "{least:?}"
+    );
+}
+
+#[test]
+fn scales_are_unusual_where_squares_leave_the_range() {
+    for usual in [0.0, 1e-12, 1.0, 1e14] {
+        assert_eq!(unusual_scale(usual), None, "{usual}");
+    }
+    for (unusual, factor) in [
+        (3e-13, 2_f64.powi(42)),
+        (3e15, 2_f64.powi(-51)),
+        (1e-45, 2_f64.powi(149)),
+    ] {
+        assert_eq!(unusual_scale(unusual), Some(factor), "{unusual}");
+    }
+}
+
+#[test]
 fn isolated_vertices_are_not_measured() {
     let mut positions = square(0.0).positions().to_vec();
     positions.push(Point::splat(100.0));

@@ -128,9 +128,10 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Returns the kinds of elements whose queries may scan.
+    /// Returns the kinds of elements whose queries may scan: no kind if the backend cannot run on a sample of
+    /// the elements.
     pub(crate) fn scans(&self, entry: &Entry) -> [bool; 3] {
-        if self.subjects[entry.subject].is_external() {
+        if !self.subjects[entry.subject].can_sample() {
             return [false; 3];
         }
         let Some(operation) = entry.operation() else {

@@ -300,6 +300,10 @@ impl TimedBackend for SimulatedBackend<'_> {
         self.built.is_external()
     }
 
+    fn can_sample(&self) -> bool {
+        self.built.can_sample()
+    }
+
     /// The real structure stays as it is: only its time passes.
     fn rebuild(&mut self) {
         self.machine

@@ -96,6 +96,10 @@ impl TimedBackend for ExternalSubject<'_> {
         true
     }
 
+    fn can_sample(&self) -> bool {
+        false
+    }
+
     /// Returns placeholders, because the costs are unknown.
     fn costs(&self) -> [QueryCost; 9] {
         [QueryCost::Local; 9]

@@ -26,6 +26,7 @@ struct Synthetic {
     placement: Placement,
     /// Time of each series outside its runs, in nanoseconds.
     outside_ns: f64,
+    can_sample: bool,
 }
 
 impl Synthetic {
@@ -39,6 +40,7 @@ impl Synthetic {
             most_run: Rc::default(),
             placement: Placement::default(),
             outside_ns: 0.0,
+            can_sample: true,
         }
     }
 
@@ -78,6 +80,9 @@ impl TimedBackend for Synthetic {
     }
     fn costs(&self) -> [QueryCost; 9] {
         self.costs
+    }
+    fn can_sample(&self) -> bool {
+        self.can_sample
     }
     fn merged_vertices(&self) -> usize {
         0
@@ -512,6 +517,16 @@ fn a_skewed_mesh_is_sampled_on_every_structure() {
         assert!(entry.job.sample.is_some() && !entry.times().is_empty());
     }
     assert!(entries[6..].iter().all(|e| e.estimate.is_some()));
+    // A backend that cannot sample runs in full.
+    let machine = SimulatedMachine::steady();
+    let subject = |can_sample| Synthetic {
+        can_sample,
+        ..Synthetic::new(&machine, 20_000.0, QueryCost::Local)
+    };
+    let subjects: [Box<dyn TimedBackend>; 2] = [true, false].map(|can| Box::new(subject(can)) as _);
+    let (entries, _) = run(&machine, subjects.into(), budget, false, true);
+    let is_sampled = |entry: &Entry| entry.job.sample.is_some();
+    assert!(is_sampled(&entries[0]) && !is_sampled(&entries[1]));
     // Cheap operations run in full even on a skewed mesh.
     let (entries, _) = measure_all(&[7.0], false, budget, false, true);
     assert!(entries.iter().all(|e| e.job.sample.is_none()));
