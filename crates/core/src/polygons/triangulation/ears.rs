@@ -404,3 +404,26 @@ impl EarClipping {
         times == 1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_is_cut_to_the_end_when_the_limit_of_the_tests_is_reached() {
+        let at = |i: u32| DVec2::from_angle(f64::from(i)) * f64::from(1 + i % 3);
+        let projected: Vec<DVec2> = (0..100).map(at).collect();
+        let points: Vec<DVec3> = projected.iter().map(|p| p.extend(0.0)).collect();
+        for (visits, is_exhausted) in [(10, true), (10_000_000, false)] {
+            let mut ears = EarClipping::default();
+            ears.start(points.len());
+            ears.visits_left = visits;
+            let mut triangles = Vec::new();
+            for shape in [Shape::Simple, Shape::Touching] {
+                triangles.clear();
+                ears.clip(&points, &projected, shape, |_, _| false, &mut triangles);
+                assert_eq!((triangles.len(), ears.is_exhausted()), (98, is_exhausted));
+            }
+        }
+    }
+}

@@ -84,6 +84,31 @@ pub(super) fn along_normal(corners: &[DVec3], normal: DVec3) -> Option<Vec<DVec2
     Some(corners.iter().map(project).collect())
 }
 
+/// The fewest corners of a tangled polygon.
+const TANGLED_CORNERS: usize = 32;
+/// How many other sides each side is compared with.
+const COMPARED_SIDES: usize = 64;
+
+/// Returns whether sides of a polygon cross in more places than there are corners, among pairs that are
+/// spread evenly over all pairs. O(n).
+pub(super) fn is_tangled(points: &[DVec2]) -> bool {
+    let n = points.len();
+    if n < TANGLED_CORNERS {
+        return false;
+    }
+    let side = |i: usize| [points[i % n], points[(i + 1) % n]];
+    let crosses = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
+        orient2d(a, b, c) * orient2d(a, b, d) < 0.0 && orient2d(c, d, a) * orient2d(c, d, b) < 0.0
+    };
+    let strides = COMPARED_SIDES.min(n / 2 - 1);
+    let pairs = (0..strides).flat_map(|k| {
+        let stride = 2 + k * (n / 2 - 1) / strides;
+        (0..n).map(move |i| [i, i + stride])
+    });
+    let crossing = pairs.filter(|&[i, j]| crosses(side(i), side(j)));
+    crossing.take(n + 1).count() > n
+}
+
 /// Returns twice the area of a triangle divided by the square of its longest side.
 pub(super) fn quality([a, b, c]: [DVec3; 3]) -> f64 {
     let sides = [b - a, c - b, a - c];
@@ -94,5 +119,33 @@ pub(super) fn quality([a, b, c]: [DVec3; 3]) -> f64 {
     match longest > 0.0 {
         true => sides[0].cross(sides[1]).length() / longest,
         false => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stars_are_tangled_and_spirals_are_not() {
+        let at = |angle: f64, radius: f64| radius * DVec2::from_angle(angle);
+        let star = |n: usize, step: usize| -> Vec<DVec2> {
+            let turn = std::f64::consts::TAU / n as f64;
+            (0..n)
+                .map(|i| at((i * step % n) as f64 * turn, 1.0))
+                .collect()
+        };
+        for n in [33, 65, 129, 1001, 10_001] {
+            assert!(is_tangled(&star(n, n / 2)), "{n}");
+            assert!(!is_tangled(&star(n, 1)), "{n}");
+            // Each side crosses two others.
+            assert!(!is_tangled(&star(n, 2)), "{n}");
+        }
+        assert!(!is_tangled(&star(31, 15)));
+        let out = (0..500).map(|i| at(0.1 * f64::from(i), 1.0 + 0.1 * f64::from(i)));
+        let back = (0..500)
+            .rev()
+            .map(|i| at(0.1 * f64::from(i), 1.1 + 0.1 * f64::from(i)));
+        assert!(!is_tangled(&out.chain(back).collect::<Vec<_>>()));
     }
 }
