@@ -83,6 +83,8 @@ pub enum IgnoredKind {
     CreaseMethodTags,
     /// `t hole`: faces that are not drawn.
     HoleTags,
+    /// The sharpness of an edge or a vertex that has another one later. The last counts.
+    ReplacedSharpness,
     /// `t` with another name.
     OtherTags,
     /// A line whose keyword is not part of the format: in OBJ, in the header of PLY, and outside the
@@ -192,6 +194,10 @@ impl IgnoredKind {
             Self::BoundaryTags => ["boundary rule tag", "boundary rule tags"],
             Self::CreaseMethodTags => ["crease method tag", "crease method tags"],
             Self::HoleTags => ["hole tag", "hole tags"],
+            Self::ReplacedSharpness => [
+                "sharpness that a later one replaces",
+                "sharpness values that later ones replace",
+            ],
             Self::OtherTags => ["other tag", "other tags"],
             Self::Unknown => ["unknown statement", "unknown statements"],
         }

@@ -10,8 +10,9 @@ use crate::byte_source::ByteSource;
 use crate::error::ReadError;
 use crate::file_mesh::FileMesh;
 use crate::format::Format;
+use crate::notice::IgnoredKind;
 use crate::options::ReadOptions;
-use crate::place::{FacePlaces, Location};
+use crate::place::{FacePlaces, Location, Place};
 use normaliser::Normaliser;
 
 /// Options that keep faces as they are, use only vertex numbers, and ignore nothing.
@@ -62,8 +63,12 @@ pub(crate) fn read(
     let builder = MeshBuilder::new(name, Format::Obj, options, places);
     let mut text = Normaliser::new(builder, source);
     while read_block(&mut text)? {}
-    let tags = text.tags;
-    let mut mesh = text.builder.finish()?;
+    let (tags, mut builder) = (text.tags, text.builder);
+    for line in tags.replaced() {
+        let place = Place::Line(line);
+        builder.notices.add(IgnoredKind::ReplacedSharpness, place);
+    }
+    let mut mesh = builder.finish()?;
     let checked = tags.check(mesh.positions.len(), &mesh.faces, &mesh.short_faces);
     checked.map_err(|(line, fault)| ReadError::Tag {
         at: Location::line(name, line),

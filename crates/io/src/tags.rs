@@ -118,6 +118,28 @@ impl Tags {
         self.creases.len() + self.corners.len()
     }
 
+    /// Returns the line of each sharpness that a later one of the same edge or vertex replaces by another
+    /// value, ascending. O(n log n).
+    pub(crate) fn replaced(&self) -> Vec<u32> {
+        let edges = self.creases.iter();
+        let edges = edges.map(|tag| (Pair::new(tag.ends[0], tag.ends[1]), tag.sharpness, tag.line));
+        let vertices = self.corners.iter();
+        let vertices =
+            vertices.map(|tag| (Pair::new(tag.vertex, tag.vertex), tag.sharpness, tag.line));
+        // An edge has two ends, so none is equal to a vertex.
+        let mut all: Vec<(Pair<VertexId>, f32, u32)> = edges.chain(vertices).collect();
+        all.sort_by_key(|&(place, ..)| place);
+        let replaced = all.windows(2).filter_map(|pair| match *pair {
+            [(place, sharpness, line), (next, later, _)] => {
+                (place == next && sharpness != later).then_some(line)
+            }
+            _ => None,
+        });
+        let mut lines: Vec<u32> = replaced.collect();
+        lines.sort_unstable();
+        lines
+    }
+
     /// Parses the text after the name of a tag.
     pub(crate) fn read(&mut self, tag: Tag, values: &str, line: u32) -> Result<(), TagFault> {
         let mut words = values.split_whitespace();

@@ -200,9 +200,23 @@ fn one_tag_can_have_a_chain_of_edges_or_several_corners() {
         });
         assert!(Creases::new(&polygons, edges, []).is_ok());
     }
-    let twice =
-        format!("{SQUARES}t crease 2/1/0 0 1 4\nt crease 2/1/0 1 0 0\nt corner 2/1/0 1 1 2\n");
-    assert_eq!(numbers(&read(&twice).creases().0), (vec![], vec![(1, 2.0)]));
+}
+
+#[test]
+fn the_last_sharpness_counts_and_earlier_ones_are_named() {
+    let values = |tags: &str| {
+        let obj = read(&format!("{tags}{SQUARES}"));
+        let notices: Vec<String> = obj.notices.iter().map(ToString::to_string).collect();
+        (numbers(&obj.creases().0), notices.concat())
+    };
+    let twice = "t crease 2/1/0 0 1 4\nt crease 2/1/0 1 0 0\nt corner 2/1/0 1 1 2\n";
+    let notice = "ignored 1 sharpness that a later one replaces (line 1)";
+    assert_eq!(values(twice), ((vec![], vec![(1, 2.0)]), notice.into()));
+    let corners = "t crease 2/1/0 1 2 5\nt corner 1/1/0 2 3\nt corner 1/1/0 2 1\nt corner 1/1/0 2 1\n\
+                   t crease 2/1/0 2 1 6\nt corner 1/1/0 1 1\n";
+    let notice = "ignored 2 sharpness values that later ones replace (first at line 1)";
+    let expected = (vec![(1, 2, 6.0)], vec![(1, 1.0), (2, 1.0)]);
+    assert_eq!(values(corners), (expected, notice.into()));
 }
 
 #[test]
