@@ -11,7 +11,7 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
-use crate::rules::{Curve, HUB, keeps_orientation, keeps_topology};
+use crate::rules::{Curve, HUB, curves, keeps_orientation_at, keeps_topology};
 
 /// Weight of a plane through a boundary edge or an edge with three or more faces, relative to the plane
 /// of a face.
@@ -23,6 +23,13 @@ const WATCH_INTERVAL: usize = 1024;
 /// Number of edges at hubs that may be visited, for each edge of the mesh, until the other edges have
 /// been tried.
 const HUB_VISITS: usize = 256;
+
+/// If the distance is limited, a vertex with more edges than this stays in its place, so that the surface
+/// is not searched around all of it.
+const LARGE_HUB: u32 = 16 * HUB;
+
+/// Visits that the distance around one edge of a hub counts as.
+const DISTANCE_VISITS: usize = 16;
 
 /// The edges of a hub are tried again after this part of them has been collapsed.
 const HUB_PART: u32 = 16;
@@ -131,7 +138,10 @@ pub struct Decimated {
 /// than the largest distance. A refused collapse is tried again after an end of the edge has changed.
 ///
 /// A vertex with more than 64 edges is a hub. The edges of a hub are tried again only after a sixteenth
-/// of them has been collapsed. They are tried after all other edges if they took very long already.
+/// of them has been collapsed. If they took very long already (256 visited edges for each edge of the
+/// mesh), they are tried after all other edges, and from then on hubs stay in their place: the attempt
+/// takes the time of the other end, and two hubs do not merge. If the distance is limited, a hub with more
+/// than 1024 edges stays in its place from the beginning.
 ///
 /// Errors are rounded into buckets, so that the errors in one bucket differ by at most an eighth. A
 /// round collapses all edges of the bucket with the lowest errors, in the order of their vertex
@@ -255,8 +265,10 @@ struct Work<M: MeshEdit> {
     queue: Queue,
     /// Edges at hubs that are tried after the other edges.
     last: Vec<Entry>,
-    /// The number of edges at hubs that may be visited before `last` is tried.
+    /// The number of edges at hubs that may be visited until `hubs_stay`.
     visits: usize,
+    /// Whether `last` is being tried, and hubs do not move.
+    hubs_stay: bool,
     /// The distance to the input, if it is limited.
     deviation: Option<Deviation>,
     /// The size of the mesh. Positions are divided by this size.
@@ -284,6 +296,7 @@ impl<M: MeshEdit> Work<M> {
             queue: Queue::new(),
             last: Vec::new(),
             visits: 0,
+            hubs_stay: false,
             deviation: None,
             size: if size > 0.0 { size } else { 1.0 },
         };
@@ -346,13 +359,10 @@ impl<M: MeshEdit> Work<M> {
     fn set_curves(&mut self, mut sides: Vec<[u32; 2]>) {
         sides.sort_unstable();
         let edges = sides.chunk_by(|one, other| one == other);
-        let mut spokes: Vec<[u32; 2]> = edges
-            .flat_map(|edge| edge[0].map(|n| [n, row(edge.len())]))
-            .collect();
-        spokes.sort_unstable();
-        for at_vertex in spokes.chunk_by(|one, other| one[0] == other[0]) {
-            let counts = at_vertex.iter().map(|&[_, faces]| faces as usize);
-            self.vertices[at_vertex[0][0] as usize].curve = Curve::from_face_counts(counts);
+        let spokes = edges.flat_map(|edge| edge[0].map(|n| [n, row(edge.len())]));
+        let curves = curves(spokes.collect(), self.vertices.len());
+        for (vertex, curve) in self.vertices.iter_mut().zip(curves) {
+            vertex.curve = curve;
         }
     }
 
@@ -384,15 +394,16 @@ impl<M: MeshEdit> Work<M> {
     }
 
     /// Returns the next edge to try and the valence of its ends. The visits of hubs must not take most
-    /// of the time. Therefore, edges at hubs wait for the other edges after very many visits.
+    /// of the time. Therefore, edges at hubs wait for the other edges after very many visits, and then hubs
+    /// stay in their place, so that they are not visited.
     fn next_entry(&mut self) -> Option<(Entry, u32)> {
         loop {
             let Some(entry) = self.queue.pop() else {
                 if self.last.is_empty() {
                     return None;
                 }
+                self.hubs_stay = true;
                 for entry in std::mem::take(&mut self.last) {
-                    self.visits += HUB_VISITS;
                     if self.is_current(&entry) {
                         let [a, b] = entry.ends;
                         self.push_edge(a, b);
@@ -405,7 +416,7 @@ impl<M: MeshEdit> Work<M> {
             }
             let [a, b] = entry.ends.map(|n| self.vertices[n as usize].valence);
             let valence = a.max(b);
-            if valence <= HUB {
+            if valence <= HUB || self.hubs_stay {
                 return Some((entry, valence));
             }
             match self.visits.checked_sub(valence as usize) {
@@ -440,6 +451,13 @@ impl<M: MeshEdit> Work<M> {
         self.version(entry.ends) == entry.version
     }
 
+    /// Returns whether a vertex must not move.
+    #[inline]
+    fn is_fixed(&self, vertex: &Vertex) -> bool {
+        let stays = || self.hubs_stay || self.deviation.is_some() && vertex.valence > LARGE_HUB;
+        vertex.fixed || vertex.is_hub() && stays()
+    }
+
     /// Returns the best place for the merged vertex, or `None` if both ends are fixed.
     #[inline]
     fn best_placement(&self, [a, b]: [u32; 2]) -> Option<Placement> {
@@ -451,7 +469,7 @@ impl<M: MeshEdit> Work<M> {
             error: sum.value(offset),
             sum,
         };
-        match [p.fixed, q.fixed] {
+        match [p, q].map(|vertex| self.is_fixed(vertex)) {
             [true, true] => return None,
             [true, false] => return Some(at(DVec3::ZERO)),
             [false, true] => return Some(at(edge)),
@@ -493,21 +511,30 @@ impl<M: MeshEdit> Work<M> {
         };
         let placement = self.best_placement(ends)?;
         // A fixed end keeps its exact position.
-        let to = match [p.fixed, q.fixed] {
+        let to = match [&p, &q].map(|vertex| self.is_fixed(vertex)) {
             [true, _] => p.at,
             [_, true] => q.at,
             _ => (p.at.as_dvec3() + placement.offset * self.size).as_vec3(),
         };
         let [kept, gone] = ends.map(|n| self.numbering.handle(n));
         let curve = |v| self.vertices[self.numbering.number(v) as usize].curve;
+        let place = to.as_dvec3();
+        let moves = to != p.at;
         let is_legal = (!M::CAPABILITIES.non_manifold_edges
             || keeps_topology(mesh, e, [gone, kept], p.is_hub(), curve))
-            && keeps_orientation(mesh, [gone, kept], to.as_dvec3());
+            && keeps_orientation_at(mesh, [gone, kept], place)
+            && (!moves || keeps_orientation_at(mesh, [kept, gone], place));
         if !is_legal {
             return None;
         }
+        if self.deviation.is_some() && moves && p.is_hub() {
+            let visits = DISTANCE_VISITS * p.valence as usize;
+            self.visits = self.visits.saturating_sub(visits);
+        }
         if let Some(deviation) = &mut self.deviation
-            && !deviation.allows(mesh, &self.numbering, ends, to)
+            && !deviation.allows(mesh, &self.numbering, ends, to, |n| {
+                self.vertices[n as usize].is_hub()
+            })
         {
             return None;
         }
@@ -522,7 +549,7 @@ impl<M: MeshEdit> Work<M> {
         };
         let kept = mesh.collapse_edge(e, kept, to).ok()?;
         if let Some(deviation) = &mut self.deviation {
-            deviation.merge(ends);
+            deviation.merge();
         }
         self.numbering.set_handle(a, kept);
         self.numbering.remove(b);

@@ -9,7 +9,9 @@ use sixfold_core::{MeshEdit, row};
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
-use crate::rules::{HUB, at, is_boundary, keeps_orientation, may_collapse};
+use crate::rules::{
+    Curve, HUB, at, curves, keeps_orientation, keeps_orientation_at, keeps_topology,
+};
 
 /// `LONG`: minimum length of edges that are split. `SHORT`: maximum length of edges that are
 /// collapsed. Both are multiples of the target length.
@@ -18,6 +20,9 @@ const SHORT: f64 = 4.0 / 5.0;
 
 /// Minimum cosine of the turning angle at a vertex of a straight boundary.
 const STRAIGHT: f64 = 0.9962; // 5 degrees
+
+/// Number of edges at hubs that the collapses of an iteration may visit, for each edge of the mesh.
+const HUB_VISITS: usize = 64;
 
 /// Minimum edge length, in steps between neighbouring f32 coordinates.
 const MIN_STEPS: f64 = 4.0;
@@ -99,7 +104,9 @@ pub struct Remeshed {
 ///
 /// Each iteration takes O(edges log edges) time, plus the structure's cost of the queries and of
 /// one edit for each edge. The maximum number of faces limits the number of splits. The other
-/// passes visit each edge or each vertex once.
+/// passes visit each edge or each vertex once. A collapse at a vertex with more than 64 edges (a hub)
+/// visits all of them only if nothing at the other end forbids it. After 64 visited edges for each edge
+/// of the mesh, such collapses wait for the next iteration.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remeshed, RemeshError> {
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
 }
@@ -120,15 +127,7 @@ pub fn remesh_watched<M: MeshEdit>(
         return Err(RemeshError::BadLength { length });
     }
     let numbering = Numbering::new(mesh)?;
-    let numbers = 0..row(numbering.len());
-    let mut work = Work {
-        is_boundary: numbers
-            .map(|n| is_boundary(mesh, numbering.handle(n)))
-            .collect(),
-        numbering,
-        long: (LONG * length) * (LONG * length),
-        short: (SHORT * length) * (SHORT * length),
-    };
+    let mut work = Work::new(mesh, numbering, length);
     // Uses the larger of two estimates of the number of faces: the area filled with equilateral
     // triangles, and triangles along the long edges. The second estimate is for faces with almost
     // no area.
@@ -206,14 +205,45 @@ fn check_precision<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
-    /// By number: whether the vertex is on the boundary. No edit makes an inner vertex a boundary vertex.
-    is_boundary: Vec<bool>,
+    /// By number: how many edges of the vertex have one face. No edit makes an inner vertex a boundary
+    /// vertex.
+    boundary_edges: Vec<u32>,
+    /// By number: the place on the curves. The edits keep the curves.
+    curves: Vec<Curve>,
     /// Squared length above which an edge is split.
     long: f64,
     short: f64,
 }
 
 impl<M: MeshEdit> Work<M> {
+    fn new(mesh: &M, numbering: Numbering<M>, length: f64) -> Self {
+        let face_counts = mesh.edge_face_counts();
+        let mut boundary_edges = vec![0; numbering.len()];
+        let mut spokes = Vec::new();
+        for e in mesh.edges().filter(|&e| face_counts[e] != 2) {
+            let faces = match face_counts[e] {
+                u8::MAX => mesh.edge_faces(e).count(),
+                faces => usize::from(faces),
+            };
+            let faces = row(faces);
+            for n in mesh.edge_vertices(e).map(|v| numbering.number(v)) {
+                boundary_edges[n as usize] += u32::from(faces == 1);
+                spokes.push([n, faces]);
+            }
+        }
+        Self {
+            boundary_edges,
+            curves: curves(spokes, numbering.len()),
+            numbering,
+            long: (LONG * length) * (LONG * length),
+            short: (SHORT * length) * (SHORT * length),
+        }
+    }
+
+    fn is_boundary(&self, number: u32) -> bool {
+        self.boundary_edges[number as usize] > 0
+    }
+
     fn ends(&self, mesh: &M, ends: [u32; 2]) -> [DVec3; 2] {
         ends.map(|n| at(mesh, self.numbering.handle(n)))
     }
@@ -246,11 +276,16 @@ impl<M: MeshEdit> Work<M> {
             if !halves.iter().all(|&half| half < whole && half > 0.0) {
                 continue;
             }
+            let faces = mesh.edge_faces(e).take(3).count();
             let Ok(m) = mesh.bisect_edge(e, middle) else {
                 continue;
             };
             let number = self.numbering.push(m);
-            self.is_boundary.push(is_boundary(mesh, m));
+            self.boundary_edges.push(if faces == 1 { 2 } else { 0 });
+            self.curves.push(match faces {
+                2 => Curve::Off,
+                _ => Curve::Inside,
+            });
             splits += 1;
             let mut spokes: Vec<[u32; 2]> = mesh
                 .vertex_vertices(m)
@@ -263,10 +298,9 @@ impl<M: MeshEdit> Work<M> {
         (splits, true)
     }
 
-    /// Returns the edges in the order in which they are collapsed. Each collapse at a hub visits all of its
+    /// Returns the edges in the order in which they are collapsed. A collapse at a hub may visit all of its
     /// edges, so these come last: collapses around the hub lower its valence first.
-    fn collapse_order(&self, mesh: &M) -> Vec<[u32; 2]> {
-        let valences = self.numbering.valences(mesh);
+    fn collapse_order(&self, mesh: &M, valences: &[u32]) -> Vec<[u32; 2]> {
         let is_at_hub = |ends: &[u32; 2]| ends.iter().any(|&n| valences[n as usize] > HUB);
         let mut edges = self.numbering.edges(mesh);
         edges.sort_by_key(is_at_hub);
@@ -276,8 +310,11 @@ impl<M: MeshEdit> Work<M> {
     /// Collapses short edges, unless an edge would become too long. Returns the number of
     /// collapses.
     fn collapse_short(&mut self, mesh: &mut M) -> usize {
+        let mut valences = self.numbering.valences(mesh);
+        let order = self.collapse_order(mesh, &valences);
+        let mut visits = HUB_VISITS.saturating_mul(order.len());
         let mut collapses = 0;
-        for ends in self.collapse_order(mesh) {
+        for ends in order {
             let Some(e) = self.numbering.edge(mesh, ends) else {
                 continue;
             };
@@ -287,36 +324,90 @@ impl<M: MeshEdit> Work<M> {
             let Some((keep, to)) = self.collapse_target(mesh, e, ends) else {
                 continue;
             };
-            let handles = ends.map(|n| self.numbering.handle(n));
-            let stays_short = handles.into_iter().all(|v| {
-                let mut around = mesh.vertex_vertices(v);
-                around
-                    .all(|u| handles.contains(&u) || at(mesh, u).distance_squared(to) <= self.long)
-            });
-            if !stays_short || !keeps_orientation(mesh, handles, to) || !may_collapse(mesh, e) {
+            if !self.may_collapse(mesh, e, ends, to, &valences, &mut visits) {
                 continue;
             }
             let place = to.as_vec3();
             if !place.is_finite() {
                 continue;
             }
+            let mut faces = 0;
+            let mut apexes = Vec::with_capacity(2);
+            for f in mesh.edge_faces(e) {
+                faces += 1;
+                let numbers = corners(mesh, f).map(|v| self.numbering.number(v));
+                apexes.extend(numbers.into_iter().filter(|n| !ends.contains(n)));
+            }
             if let Ok(kept) = mesh.collapse_edge(e, self.numbering.handle(keep), place) {
                 self.numbering.set_handle(keep, kept);
-                let [a, b] = ends;
-                self.is_boundary[keep as usize] =
-                    ends.iter().any(|&n| self.is_boundary[n as usize]);
-                self.numbering.remove(if keep == a { b } else { a });
+                let [a, b] = ends.map(|n| n as usize);
+                let keep = keep as usize;
+                // An edge on the boundary is gone from both of its ends.
+                let removed = if faces == 1 { 2 } else { 0 };
+                self.boundary_edges[keep] =
+                    (self.boundary_edges[a] + self.boundary_edges[b]).saturating_sub(removed);
+                self.curves[keep] = self.curves[a].max(self.curves[b]);
+                valences[keep] = (valences[a] + valences[b]).saturating_sub(2 + faces);
+                for apex in apexes {
+                    valences[apex as usize] = valences[apex as usize].saturating_sub(1);
+                }
+                self.numbering
+                    .remove(if keep == a { ends[1] } else { ends[0] });
                 collapses += 1;
             }
         }
         collapses
     }
 
+    /// Returns whether an edge can collapse into the place `to`. The end with fewer edges is checked first.
+    /// If the other end is a hub, its edges are visited only if they are not more than `visits`, from which
+    /// they are subtracted.
+    fn may_collapse(
+        &self,
+        mesh: &M,
+        e: M::Edge,
+        mut ends: [u32; 2],
+        to: DVec3,
+        valences: &[u32],
+        visits: &mut usize,
+    ) -> bool {
+        let valence = |n: u32| valences[n as usize];
+        if valence(ends[0]) > valence(ends[1]) {
+            ends.reverse();
+        }
+        let [few, many] = ends.map(|n| self.numbering.handle(n));
+        let is_hub = valence(ends[1]) > HUB;
+        let stays_short = |end: M::Vertex, other: M::Vertex| {
+            mesh.vertex_faces(end).all(|f| {
+                let mut around = corners(mesh, f).into_iter();
+                around.all(|u| {
+                    u == end || u == other || at(mesh, u).distance_squared(to) <= self.long
+                })
+            })
+        };
+        let allows =
+            |end, other| stays_short(end, other) && keeps_orientation_at(mesh, [end, other], to);
+        let curve = |v| self.curves[self.numbering.number(v) as usize];
+        if !allows(few, many)
+            || M::CAPABILITIES.non_manifold_edges
+                && !keeps_topology(mesh, e, [few, many], is_hub, curve)
+        {
+            return false;
+        }
+        if is_hub {
+            let Some(rest) = visits.checked_sub(valence(ends[1]) as usize) else {
+                return false;
+            };
+            *visits = rest;
+        }
+        allows(many, few)
+    }
+
     /// Returns the end that remains and its new position, or `None` if the boundary would change
     /// its shape.
     fn collapse_target(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
         let [p, q] = self.ends(mesh, ends);
-        match ends.map(|n| self.is_boundary[n as usize]) {
+        match ends.map(|n| self.is_boundary(n)) {
             [false, false] => Some((ends[0], (p + q) / 2.0)),
             [true, false] => Some((ends[0], p)),
             [false, true] => Some((ends[1], q)),
@@ -334,6 +425,9 @@ impl<M: MeshEdit> Work<M> {
     }
 
     fn is_straight(&self, mesh: &M, number: u32) -> bool {
+        if self.boundary_edges[number as usize] != 2 {
+            return false;
+        }
         let v = self.numbering.handle(number);
         let from = at(mesh, v);
         let spokes = mesh
@@ -368,7 +462,7 @@ impl<M: MeshEdit> Work<M> {
             let [a, b] = handles;
             let numbers = [a, b, c, d].map(|v| self.numbering.number(v) as usize);
             let excess = |n: usize| {
-                let regular = if self.is_boundary[n] { 4 } else { 6 };
+                let regular = if self.boundary_edges[n] > 0 { 4 } else { 6 };
                 i64::from(valences[n]) - regular
             };
             let [va, vb, vc, vd] = numbers.map(excess);
@@ -394,7 +488,7 @@ impl<M: MeshEdit> Work<M> {
         vertices.sort_unstable();
         for number in vertices.into_iter().filter(|&n| n != u32::MAX) {
             let v = self.numbering.handle(number);
-            if self.is_boundary[number as usize] {
+            if self.is_boundary(number) {
                 continue;
             }
             let from = at(mesh, v);

@@ -192,16 +192,14 @@ pub(crate) fn corners_from<M: MeshEdit>(mesh: &M, f: M::Face, v: M::Vertex) -> [
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use sixfold_core::{MeshQuery, PolygonMesh, Representation};
     use sixfold_half_edge::EditableHalfEdgeMesh;
 
     use super::*;
 
-    /// Two cones over one rim: their tips have very many edges.
-    #[test]
-    fn edges_are_found_around_vertices_with_many_edges() {
-        let n = 3 * FEW_EDGES as u32;
+    /// Returns two cones over one rim: their tips, which are the last two vertices, have `n` edges.
+    pub(crate) fn two_cones(n: u32) -> PolygonMesh {
         let rim = (0..n).map(|i| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos();
             Point::new(cos as f32, sin as f32, 0.0)
@@ -210,7 +208,13 @@ mod tests {
         let sides = (0..n).map(|i| [i, (i + 1) % n]);
         let faces = sides.flat_map(|[a, b]| [[a, b, n], [b, a, n + 1]]);
         let points: Vec<Point> = rim.chain(tips).collect();
-        let polygons = PolygonMesh::new(points, faces).expect("two cones");
+        PolygonMesh::new(points, faces).expect("two cones")
+    }
+
+    #[test]
+    fn edges_are_found_around_vertices_with_many_edges() {
+        let n = 3 * FEW_EDGES as u32;
+        let polygons = two_cones(n);
         let mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
         let numbering = Numbering::new(&mesh).expect("triangles");
         let valences = numbering.valences(&mesh);

@@ -20,31 +20,27 @@ pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
 /// Returns whether all remaining triangles keep their orientation if both ends of an edge move to
 /// `to`.
 pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
-    for (end, other) in [(a, b), (b, a)] {
-        let from = at(mesh, end);
-        for f in mesh.vertex_faces(end) {
-            let [_, p, q] = corners_from(mesh, f, end);
-            if p == other || q == other {
-                continue;
-            }
-            let [p, q] = [at(mesh, p), at(mesh, q)];
-            let before = (p - from).cross(q - from);
-            let after = (p - to).cross(q - to);
-            // A face without area has no orientation.
-            let keeps = before == DVec3::ZERO
-                || before.dot(after) > MIN_COSINE * before.length() * after.length();
-            if !keeps {
-                return false;
-            }
-        }
-    }
-    true
+    keeps_orientation_at(mesh, [a, b], to) && keeps_orientation_at(mesh, [b, a], to)
 }
 
-/// Returns whether a collapse of `e` would keep the topology. Structures that hold only manifolds
-/// refuse other collapses themselves.
-pub(crate) fn may_collapse<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
-    !M::CAPABILITIES.non_manifold_edges || meets_link_condition(mesh, e)
+/// Returns whether all triangles at `end` and not at `other` keep their orientation if `end` moves to `to`.
+pub(crate) fn keeps_orientation_at<M: MeshEdit>(
+    mesh: &M,
+    [end, other]: [M::Vertex; 2],
+    to: DVec3,
+) -> bool {
+    let from = at(mesh, end);
+    mesh.vertex_faces(end).all(|f| {
+        let [_, p, q] = corners_from(mesh, f, end);
+        if p == other || q == other {
+            return true;
+        }
+        let [p, q] = [at(mesh, p), at(mesh, q)];
+        let before = (p - from).cross(q - from);
+        let after = (p - to).cross(q - to);
+        // A face without area has no orientation.
+        before == DVec3::ZERO || before.dot(after) > MIN_COSINE * before.length() * after.length()
+    })
 }
 
 /// Returns whether edge `e` meets the link condition (Dey et al. 1999): a collapse of `e` then keeps
@@ -111,6 +107,18 @@ impl Curve {
     }
 }
 
+/// Returns the places of all vertices on the curves, from the vertex and the number of faces of each end of
+/// an edge on a curve; O(ends log ends).
+pub(crate) fn curves(mut spokes: Vec<[u32; 2]>, vertices: usize) -> Vec<Curve> {
+    let mut curves = vec![Curve::Off; vertices];
+    spokes.sort_unstable();
+    for at_vertex in spokes.chunk_by(|one, other| one[0] == other[0]) {
+        let counts = at_vertex.iter().map(|&[_, faces]| faces as usize);
+        curves[at_vertex[0][0] as usize] = Curve::from_face_counts(counts);
+    }
+    curves
+}
+
 /// Returns the place of `v` on the curves.
 pub(crate) fn curve_at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> Curve {
     let counts = mesh.vertex_edges(v).map(|e| mesh.edge_faces(e).count());
@@ -154,13 +162,8 @@ pub(crate) fn keeps_topology<M: MeshEdit>(
     if common != apexes.len() {
         return false;
     }
-    // The apexes of a tetrahedron are adjacent.
-    let may_be_tetrahedron = match apexes[..] {
-        [] | [_] => false,
-        [one, other] => mesh.edge_between(one, other).is_some(),
-        _ => true,
-    };
-    if may_be_tetrahedron && is_in_tetrahedron(mesh, [a, b], &apexes) {
+    // Does not look for an edge between the apexes first: both may be hubs.
+    if apexes.len() > 1 && is_in_tetrahedron(mesh, [a, b], &apexes) {
         return false;
     }
     match faces {
@@ -192,12 +195,6 @@ fn is_in_tetrahedron<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], apexes: &[M:
 fn is_curve<M: MeshEdit>(mesh: &M, a: M::Vertex, b: M::Vertex) -> bool {
     let e = mesh.edge_between(a, b);
     e.is_some_and(|e| mesh.edge_faces(e).take(3).count() != 2)
-}
-
-/// Returns whether `v` is an end of an edge with one face.
-pub(crate) fn is_boundary<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
-    mesh.vertex_edges(v)
-        .any(|e| mesh.edge_faces(e).count() == 1)
 }
 
 #[cfg(test)]

@@ -124,6 +124,24 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
         Some(squared)
     }
 
+    /// Returns whether the surface is within `radius` of `query`, at this distance included. Ends at the
+    /// first face that is.
+    #[inline]
+    fn is_within(&self, query: impl Into<DVec3>, radius: f64) -> bool {
+        let query = query.into();
+        let items = self.items();
+        // A little more, because the root of a squared distance is rounded.
+        let Some(limit) = squared_radius(radius * (1.0 + 1e-12)) else {
+            return false;
+        };
+        let mut is_within = false;
+        self.visit_near(query, limit, |slot| {
+            is_within |= offset_to_triangle(query, &items[slot]).length() <= radius;
+            if is_within { f64::NEG_INFINITY } else { limit }
+        });
+        is_within
+    }
+
     /// Returns the closest point of the faces whose normal agrees with `normal`: the cosine of the
     /// angle between them is at least `least_cosine`. So a point does not get to the other side of a
     /// thin wall. Faces without area are left out.

@@ -6,6 +6,7 @@ use sixfold_indexed_face_set::EditableIndexedFaceSet;
 use sixfold_spatial::{Bvh, SpatialIndex, SurfaceQueries, polygon_triangles};
 
 use super::*;
+use crate::numbering::tests::two_cones;
 use crate::rules::curve_at;
 
 fn decimation(target: Target, boundary: DecimationBoundary) -> Decimation {
@@ -264,6 +265,25 @@ fn the_largest_distance_is_kept() {
         }
     }
     assert!(faces_before < 40, "{faces_before}");
+}
+
+#[test]
+fn the_largest_distance_is_kept_at_hubs() {
+    for n in [2 * HUB, LARGE_HUB + 100] {
+        let cones = two_cones(n);
+        let surface = Bvh::build(polygon_triangles(&cones).expect("finite")).expect("small");
+        let limit = 0.005;
+        let (mesh, report) = decimated(&cones, &bounded(limit));
+        assert!(report.max_distance.expect("it was limited") <= limit);
+        assert!(report.faces < 150, "{}", report.faces);
+        let out = mesh.to_polygons();
+        let new = Bvh::build(polygon_triangles(&out).expect("finite")).expect("small");
+        for (points, other) in [(out.positions(), &surface), (cones.positions(), &new)] {
+            for &p in points {
+                assert!(other.is_within(p, limit * (1.0 + 1e-6)), "{p}");
+            }
+        }
+    }
 }
 
 #[test]

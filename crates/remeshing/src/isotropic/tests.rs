@@ -168,15 +168,60 @@ fn edges_at_hubs_are_collapsed_last() {
     let sphere = sixfold_shapes::uv_sphere(HUB as usize + 1, 5).expect("small");
     let sphere = sphere.triangulated().expect("small").polygons;
     let mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
-    let work = Work {
-        numbering: Numbering::new(&mesh).expect("triangles"),
-        is_boundary: vec![false; mesh.vertex_count()],
-        long: 0.0,
-        short: 0.0,
-    };
+    let numbering = Numbering::new(&mesh).expect("triangles");
+    let work = Work::new(&mesh, numbering, 1.0);
+    let valences = work.numbering.valences(&mesh);
     let is_at_pole = |&[a, b]: &[u32; 2]| a == 0 || b as usize == mesh.vertex_count() - 1;
     let edges = work.numbering.edges(&mesh);
     assert!(is_at_pole(&edges[0]));
     let (at_poles, others): (Vec<_>, Vec<_>) = edges.into_iter().partition(is_at_pole);
-    assert_eq!(work.collapse_order(&mesh), [others, at_poles].concat());
+    assert_eq!(
+        work.collapse_order(&mesh, &valences),
+        [others, at_poles].concat()
+    );
+}
+
+/// What the other end of an edge at a hub forbids needs no visit of the hub.
+#[test]
+fn hubs_are_visited_last_and_not_too_often() {
+    let n = 4 * HUB;
+    // Tetrahedra with one vertex in common cannot collapse there.
+    let tetrahedra = {
+        let corners = (0..n).flat_map(|i| {
+            let (sin, cos) = (i as f32).sin_cos();
+            [[cos, sin, 0.0], [cos, sin, 0.001], [cos, sin + 0.001, 0.0]]
+        });
+        let points = std::iter::once([0.0; 3]).chain(corners);
+        let faces = (0..n).flat_map(|i| {
+            let [a, b, c] = [1, 2, 3].map(|k| 3 * i + k);
+            [[0, a, b], [0, b, c], [0, c, a], [a, c, b]]
+        });
+        PolygonMesh::new(points, faces).expect("valid")
+    };
+    let fan = {
+        let rim = (0..n).map(|i| {
+            let (sin, cos) = (i as f32 * std::f32::consts::TAU / n as f32).sin_cos();
+            [cos, sin, 0.0]
+        });
+        let points = std::iter::once([0.0; 3]).chain(rim);
+        PolygonMesh::new(points, (0..n).map(|i| [0, i + 1, (i + 1) % n + 1])).expect("valid")
+    };
+    for (polygons, are_visited) in [(tetrahedra, false), (fan, true)] {
+        let mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
+        let numbering = Numbering::new(&mesh).expect("triangles");
+        let work = Work::new(&mesh, numbering, 10.0);
+        let valences = work.numbering.valences(&mesh);
+        let mut edges = work.numbering.edges(&mesh);
+        edges.retain(|ends| ends.iter().any(|&v| valences[v as usize] > HUB));
+        let mut visits = 10 * n as usize;
+        let mut allowed = 0;
+        for &ends in edges.iter().step_by(16) {
+            let e = work.numbering.edge(&mesh, ends).expect("an edge");
+            let to = DVec3::ZERO;
+            allowed += usize::from(work.may_collapse(&mesh, e, ends, to, &valences, &mut visits));
+        }
+        let most = if are_visited { 10 } else { 0 };
+        assert_eq!(allowed, most);
+        assert_eq!(visits, (10 - most) * n as usize);
+    }
 }
