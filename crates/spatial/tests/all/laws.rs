@@ -211,6 +211,8 @@ fn surface_answers<T: SpatialIndex<FaceTriangle<u32>>>(input: &Input) -> Surface
         for radius in radii(input, query) {
             let odd = |t: &FaceTriangle<u32>| t.face % 2 == 1;
             closest.push(index.closest_point_where(query, radius, &mut hint, odd));
+            let is_within = free.is_some_and(|closest| closest.distance() <= radius);
+            assert_eq!(index.is_within(query, radius), is_within, "{radius}");
         }
         let Ok(ray) = Ray::new(query, target - query) else {
             continue;
