@@ -21,7 +21,12 @@ fn report(mesh: &str) -> Report {
         ..Settings::default()
     };
     let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
-    report.expect("a study")
+    let mut report = report.expect("a study");
+    // A disturbed sample does not count, and how many are disturbed depends on the machine.
+    for row in &mut report.results {
+        row.samples = ROUNDS.get() as usize;
+    }
+    report
 }
 
 fn results(meshes: &[&str]) -> Results {
