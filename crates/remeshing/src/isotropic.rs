@@ -22,7 +22,7 @@ const SHORT: f64 = 4.0 / 5.0;
 const STRAIGHT: f64 = 0.9962; // 5 degrees
 
 /// Number of edges at hubs that the collapses of an iteration may visit, for each edge of the mesh.
-const HUB_VISITS: usize = 64;
+const HUB_VISITS: usize = 16;
 
 /// Minimum edge length, in steps between neighbouring f32 coordinates.
 const MIN_STEPS: f64 = 4.0;
@@ -105,7 +105,7 @@ pub struct Remeshed {
 /// Each iteration takes O(edges log edges) time, plus the structure's cost of the queries and of
 /// one edit for each edge. The maximum number of faces limits the number of splits. The other
 /// passes visit each edge or each vertex once. A collapse at a vertex with more than 64 edges (a hub)
-/// visits all of them only if nothing at the other end forbids it. After 64 visited edges for each edge
+/// visits all of them only if nothing at the other end forbids it. After 16 visited edges for each edge
 /// of the mesh, such collapses wait for the next iteration.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remeshed, RemeshError> {
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))

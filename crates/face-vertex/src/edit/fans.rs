@@ -18,6 +18,16 @@ use sixfold_core::{Editable, FaceId, Lookup, MAX_ROWS, Point, Probe, ShortVec, V
 use super::find::mask;
 use crate::mesh::{BLANK_PLACE, FaceVertexMesh, Fan};
 
+/// Returns the place of `f` in a long fan. Compares chunks without branches, so with vector instructions:
+/// the fan of a hub can have a hundred thousand faces.
+fn find(fan: &[FaceId], f: FaceId) -> Option<usize> {
+    const CHUNK: usize = 32;
+    let has = |chunk: &[FaceId]| chunk.iter().fold(false, |has, &face| has | (face == f));
+    let before = fan.chunks(CHUNK).position(has)? * CHUNK;
+    let within = fan[before..].iter().position(|&face| face == f)?;
+    Some(before + within)
+}
+
 impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Returns the blanks behind a fan that moves to the end of the pool. The fan has `len` faces,
     /// including the new face. Returns no blanks if places are short.
@@ -97,8 +107,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         if hits != 0 {
             return start + hits.trailing_zeros() as usize;
         }
-        let faces = self.pool.read_range(fan.range());
-        let place = faces.iter().position(|&face| face == f);
+        let place = find(self.pool.read_range(fan.range()), f);
         start + place.expect("I3: the fan of a corner contains its face")
     }
 
