@@ -131,8 +131,17 @@ impl Cell {
         matches!(self.standing, Some(Standing::Best | Standing::Alone))
     }
 
-    pub(crate) fn is_tied(&self) -> bool {
-        self.standing == Some(Standing::Tied)
+    /// Returns whether the backend shares the first place.
+    pub(crate) fn shares_first(&self) -> bool {
+        self.standing.is_some_and(Standing::shares_first)
+    }
+
+    /// Returns how the backend shares the first place.
+    pub(crate) fn shared_word(&self) -> &'static str {
+        match self.standing {
+            Some(Standing::Equal) => "equal",
+            _ => "undecided",
+        }
     }
 
     /// Returns the remark for tables, such as `best`.
@@ -140,7 +149,8 @@ impl Cell {
         let mut notes = Vec::new();
         match self.standing {
             Some(Standing::Best) => notes.push("best"),
-            Some(Standing::Tied) => notes.push("tied for best"),
+            Some(Standing::Equal) => notes.push("equal to the best"),
+            Some(Standing::Undecided) => notes.push("undecided, perhaps the best"),
             _ => {}
         }
         match self.source {
@@ -230,7 +240,7 @@ impl Cell {
             ns: row.ns_per_element,
             standing,
             remark: Some(format!(
-                "mean over {} meshes: single fastest on {}, tied for the fastest on {}, not run on {}",
+                "mean over {} meshes: single fastest on {}, shared first place on {}, not run on {}",
                 row.meshes, row.best, row.tied, row.estimated
             )),
             ..Self::new(&row.backend, source)
@@ -321,14 +331,14 @@ fn by_group<'s>(studies: &[&'s Report]) -> impl Iterator<Item = &'s OperationInf
 }
 
 impl Matrix {
-    /// Returns the ratios as a table of texts. ● marks the fastest, and ◐ those tied with it.
+    /// Returns the ratios as a table of texts. ● marks the fastest, and ◐ those that share the first place.
     pub(crate) fn ratios(&self) -> Table {
         let names = self.backends.iter().map(String::as_str);
         let mut table = Table::new(["operation"].into_iter().chain(names));
         for line in &self.lines {
             let cell = |cell: &Cell| match cell.times_text() {
                 text if cell.is_best() => format!("● {text}"),
-                text if cell.is_tied() => format!("◐ {text}"),
+                text if cell.shares_first() => format!("◐ {text}"),
                 text => text,
             };
             let cells = line.cells.iter().map(cell);

@@ -47,7 +47,7 @@ pub struct SummaryFigure {
     pub text: String,
     /// Length of the bar, from 0 for the best to 1 for 10 times the best and more, on a logarithmic scale.
     pub share: f64,
-    /// Whether the figure is the best, or tied with it.
+    /// Whether the figure is the best, or shares the first place.
     pub rank: Rank,
 }
 
@@ -56,8 +56,8 @@ pub struct SummaryFigure {
 pub enum Rank {
     /// The only best one.
     Best,
-    /// One of several without a clear difference.
-    Tied,
+    /// One of several that are equal, or between which nothing is decided.
+    Shared,
     /// Not the best.
     Other,
     /// A lower bound, which is not ranked.
@@ -233,14 +233,14 @@ impl Summary {
         summary
     }
 
-    /// Returns the figures as a table. ● marks the best of a column, and ◐ those tied with it.
+    /// Returns the figures as a table. ● marks the best of a column, and ◐ those that share the first place.
     pub(crate) fn table(&self) -> Table {
         let names = self.columns.iter().map(|column| column.name.as_str());
         let mut table = Table::new(["structure"].into_iter().chain(names));
         for row in &self.rows {
             let cell = |figure: &Option<SummaryFigure>| match figure {
                 Some(figure) if figure.rank == Rank::Best => format!("● {}", figure.text),
-                Some(figure) if figure.rank == Rank::Tied => format!("◐ {}", figure.text),
+                Some(figure) if figure.rank == Rank::Shared => format!("◐ {}", figure.text),
                 Some(figure) => figure.text.clone(),
                 None => "–".into(),
             };
@@ -286,7 +286,7 @@ fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<Summary
         _ if row.bound => Rank::Bound,
         _ if !decided => Rank::Other,
         true if best.len() == 1 => Rank::Best,
-        true => Rank::Tied,
+        true => Rank::Shared,
         false => Rank::Other,
     };
     let text = row.times(&rows[0]);
@@ -313,7 +313,7 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
         .count();
     let rank = match own == least {
         true if equal == 1 => Rank::Best,
-        true => Rank::Tied,
+        true => Rank::Shared,
         false => Rank::Other,
     };
     Some(SummaryFigure::new(
@@ -391,14 +391,14 @@ pub(crate) fn fastest_of_many(overall: &[Overall]) -> Option<String> {
     Some(format!("Fastest on average{unsure}: {}.", parts?))
 }
 
-/// Returns a backend with the number of decided meshes on which it is the fastest: `half-edge (7 of 9, tied on 1)`.
+/// Returns a backend with the number of decided meshes on which it is the fastest: `half-edge (7 of 9, shared on 1)`.
 pub(crate) fn wins(row: &Overall) -> String {
     if row.undecided == row.meshes {
         return format!("{} (too few samples)", row.backend);
     }
     let tied = match row.tied {
         0 => String::new(),
-        tied => format!(", tied on {}", grouped(tied)),
+        tied => format!(", shared on {}", grouped(tied)),
     };
     format!(
         "{} ({} of {}{tied})",

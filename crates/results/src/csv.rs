@@ -40,6 +40,7 @@ struct SampleRow<'r> {
     case: &'r str,
     operation: &'r str,
     backend: &'r str,
+    launch: u32,
     round: u32,
     cpu_ns: Option<f64>,
     wall_ns: f64,
@@ -145,7 +146,11 @@ fn time_row<'r>(kind: &'r str, figure: &Figure<'r>) -> TimeRow<'r> {
         backend_bytes: figure.backend_bytes,
         status: figure.status,
     };
-    (mesh, figure.row.clone(), backend, figure.counted)
+    let row = ResultRow {
+        launch_ns: Vec::new(), // a cell holds one number; the samples have the launches
+        ..figure.row.clone()
+    };
+    (mesh, row, backend, figure.counted)
 }
 
 fn sample_rows<'r>(kind: &'r str, figure: &'r Figure<'_>) -> impl Iterator<Item = SampleRow<'r>> {
@@ -156,6 +161,7 @@ fn sample_rows<'r>(kind: &'r str, figure: &'r Figure<'_>) -> impl Iterator<Item 
             case: &figure.row.case,
             operation: &figure.row.operation,
             backend: &figure.row.backend,
+            launch: samples.launches.get(i).copied().unwrap_or(0),
             round: samples.rounds[i],
             cpu_ns: samples.cpu_ns.as_ref().map(|all| all[i]),
             wall_ns: samples.wall_ns[i],

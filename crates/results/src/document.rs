@@ -134,14 +134,14 @@ impl Results {
     }
 
     /// Adds names to the planned meshes, if they are new.
-    pub(crate) fn plan(&mut self, meshes: impl IntoIterator<Item = String>) {
+    pub fn plan(&mut self, meshes: impl IntoIterator<Item = String>) {
         let mut known: HashSet<String> = self.planned.iter().cloned().collect();
         let new = meshes.into_iter().filter(|mesh| known.insert(mesh.clone()));
         self.planned.extend(new);
     }
 
     /// Adds the failures of meshes that are neither studied nor failed.
-    pub(crate) fn add_failures(&mut self, failures: impl IntoIterator<Item = Failed>) {
+    pub fn add_failures(&mut self, failures: impl IntoIterator<Item = Failed>) {
         let studied = self.studies().map(|study| study.mesh.name.clone());
         let failed = self.failures.iter().map(|failed| failed.mesh.clone());
         let mut done: HashSet<String> = studied.chain(failed).collect();

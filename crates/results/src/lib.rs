@@ -17,6 +17,7 @@ mod figure;
 mod finding;
 mod findings;
 mod json;
+pub mod launches;
 mod merge;
 pub mod numbers;
 mod operation;
@@ -27,6 +28,8 @@ mod read;
 mod rows;
 mod run;
 mod sanitize;
+#[cfg(test)]
+mod simulated;
 pub mod statistics;
 mod time;
 mod timer;

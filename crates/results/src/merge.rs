@@ -35,6 +35,18 @@ pub enum MergeError {
     SecondStudy { mesh: String },
 }
 
+impl MergeError {
+    /// Returns the error for two different heap policies or cache states.
+    pub(crate) fn other_memory(ours: [&str; 2], theirs: [&str; 2]) -> Self {
+        let i = usize::from(ours[0] == theirs[0]);
+        Self::OtherSettings {
+            what: ["--heap", "--caches"][i],
+            ours: ours[i].into(),
+            theirs: theirs[i].into(),
+        }
+    }
+}
+
 impl Results {
     /// Adds the findings, failures and notices of `other`. A study replaces a failure of the same mesh.
     /// A copy of a finding or notice of `self` is not added.
@@ -96,14 +108,7 @@ impl Results {
         };
         match other.studies().map(memory).find(|theirs| *theirs != ours) {
             None => Ok(()),
-            Some(theirs) => {
-                let i = usize::from(ours[0] == theirs[0]);
-                Err(MergeError::OtherSettings {
-                    what: ["--heap", "--caches"][i],
-                    ours: ours[i].into(),
-                    theirs: theirs[i].into(),
-                })
-            }
+            Some(theirs) => Err(MergeError::other_memory(ours, theirs)),
         }
     }
 }

@@ -1,11 +1,15 @@
 //! Ranks backends by their times.
 
+use crate::launches::{ratio_over_launches, time_over_launches};
 use crate::rows::Standing;
 use crate::statistics::Median;
 use crate::time::Time;
 
-/// Maximum ratio that always counts as a tie.
+/// Maximum ratio that is never a difference.
 pub const NO_DIFFERENCE: f64 = 1.02;
+
+/// Two backends are equally fast if the whole interval of their ratio lies within this ratio and its reciprocal.
+pub const EQUAL: f64 = 1.05;
 
 /// Minimum ratio of a clear difference if there are too few samples.
 pub const CLEAR_DIFFERENCE: f64 = 2.0;
@@ -23,38 +27,74 @@ pub struct Rank {
     pub standing: Option<Standing>,
 }
 
-/// Ranks the backends of one operation. `samples` are the samples of each backend with the numbers
-/// of their rounds, and `times` the [corrected times](crate::corrected_times). A backend without
+/// Ranks the backends of one operation in one launch. `samples` are the samples of each backend with the
+/// numbers of their rounds, and `times` the [corrected times](crate::corrected_times). A backend without
 /// a time has the rank `None`.
 ///
-/// The fastest backend has the smallest corrected time. Its ratio is 1. Another backend is tied with
-/// the fastest if the ratio is at most `noise`, or if the 95 % interval of the ratio includes 1.
+/// The fastest backend has the smallest corrected time. Its ratio is 1. For the others, see
+/// [`Standing`]: a ratio up to `noise` is not decided.
 ///
 /// If one of the two has fewer than [`FEWEST_OF_A_WINNER`] samples, the other backend is slower if
 /// its ratio is at least [`CLEAR_DIFFERENCE`]; otherwise its standing is unknown, and the fastest
 /// backend is not known to be the best.
 pub fn rank(samples: &[Vec<(u32, Time)>], times: &[Option<f64>], noise: f64) -> Vec<Option<Rank>> {
-    let measured = || (0..times.len()).filter_map(|b| Some((b, times[b]?)));
-    let Some((best, best_ns)) = measured().min_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+    let enough = |b: usize| samples[b].len() >= FEWEST_OF_A_WINNER;
+    let rank = |b: usize, best: usize| {
+        let (ns, best_ns) = (times[b]?, times[best]?);
+        let ratio = quotient([&samples[b], &samples[best]], [ns, best_ns])?;
+        Some((time(&samples[b], ns)?, ratio, enough(b) && enough(best)))
+    };
+    ranks(times, noise, rank)
+}
+
+/// Ranks the backends of one operation over several launches, as [`rank`] does in one launch. `launches` are
+/// the times of each backend in each launch, and `times` those [over all launches](crate::launches::times_over_launches).
+///
+/// Two backends with fewer than two launches in common have too few samples.
+pub fn rank_launches(
+    launches: &[&[Option<f64>]],
+    times: &[Option<f64>],
+    noise: f64,
+) -> Vec<Option<Rank>> {
+    let rank = |b: usize, best: usize| {
+        let (ns, best_ns) = (times[b]?, times[best]?);
+        let time = time_over_launches(ns, launches[b])?;
+        if b == best {
+            return Some((time, Median::exactly(1.0), time.interval.is_some()));
+        }
+        let ratio = ratio_over_launches([ns, best_ns], [launches[b], launches[best]]);
+        let ratio = ratio.unwrap_or(Median {
+            value: ns / best_ns,
+            least: ns / best_ns,
+            interval: None,
+        });
+        Some((time, ratio, ratio.interval.is_some()))
+    };
+    ranks(times, noise, rank)
+}
+
+/// Ranks backends. `rank` returns the time of a backend, its ratio to the best, and whether both have
+/// enough samples.
+fn ranks(
+    times: &[Option<f64>],
+    noise: f64,
+    rank: impl Fn(usize, usize) -> Option<(Median, Median, bool)>,
+) -> Vec<Option<Rank>> {
+    let measured = (0..times.len()).filter_map(|b| Some((b, times[b]?)));
+    let Some((best, _)) = measured.min_by(|(_, a), (_, b)| a.total_cmp(b)) else {
         return vec![None; times.len()];
     };
-    let enough = |samples: &[(u32, Time)]| samples.len() >= FEWEST_OF_A_WINNER;
-    let mut ranks: Vec<Option<Rank>> = samples
-        .iter()
-        .zip(times)
-        .map(|(own, &ns)| {
-            let ratio = quotient([own, &samples[best]], [ns?, best_ns])?;
-            let includes_1 = ratio.interval.is_some_and(|[low, _]| low <= 1.0);
-            let standing = match enough(own) && enough(&samples[best]) {
-                true if ratio.value <= noise || includes_1 => Some(Standing::Tied),
-                true => Some(Standing::Slower),
-                false if ratio.value >= CLEAR_DIFFERENCE => Some(Standing::Slower),
-                false => None,
-            };
+    let mut best_has_enough = false;
+    let mut ranks: Vec<Option<Rank>> = (0..times.len())
+        .map(|b| {
+            let (time, ratio, enough) = rank(b, best)?;
+            if b == best {
+                best_has_enough = enough;
+            }
             Some(Rank {
-                time: time(own, ns?)?,
+                time,
                 ratio,
-                standing,
+                standing: standing(ratio, enough, noise),
             })
         })
         .collect();
@@ -66,14 +106,29 @@ pub fn rank(samples: &[Vec<(u32, Time)>], times: &[Option<f64>], noise: f64) -> 
     let has = |standing| others().any(|rank| rank.standing == standing);
     let standing = match () {
         () if others().next().is_none() => Some(Standing::Alone),
-        () if has(Some(Standing::Tied)) => Some(Standing::Tied),
-        () if has(None) || !enough(&samples[best]) => None,
+        () if has(Some(Standing::Undecided)) => Some(Standing::Undecided),
+        () if has(None) && has(Some(Standing::Equal)) => Some(Standing::Undecided),
+        () if has(None) || !best_has_enough => None,
+        () if has(Some(Standing::Equal)) => Some(Standing::Equal),
         () => Some(Standing::Best),
     };
     if let Some(rank) = &mut ranks[best] {
         rank.standing = standing;
     }
     ranks
+}
+
+/// Returns the standing of a backend whose time, divided by that of the fastest, is `ratio`.
+fn standing(ratio: Median, enough: bool, noise: f64) -> Option<Standing> {
+    if !enough {
+        return (ratio.value >= CLEAR_DIFFERENCE).then_some(Standing::Slower);
+    }
+    let [low, high] = ratio.interval.unwrap_or([0.0, f64::INFINITY]);
+    Some(match () {
+        () if noise <= EQUAL && EQUAL.recip() <= low && high <= EQUAL => Standing::Equal,
+        () if low <= 1.0 || ratio.value <= noise => Standing::Undecided,
+        () => Standing::Slower,
+    })
 }
 
 /// Returns the corrected time `ns` with the interval of its samples.
@@ -95,11 +150,7 @@ pub fn quotient([a, b]: [&[(u32, Time)]; 2], [ns, other_ns]: [f64; 2]) -> Option
 /// returns the ratio of the medians. The ratio of a series to itself is exactly 1.
 pub fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
     if samples == best && !samples.is_empty() {
-        return Some(Median {
-            value: 1.0,
-            least: 1.0,
-            interval: Some([1.0; 2]),
-        });
+        return Some(Median::exactly(1.0));
     }
     let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
     let pairs = samples
@@ -121,6 +172,7 @@ pub fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
 mod tests {
     use super::*;
     use crate::corrected::corrected_times;
+    use crate::launches::times_over_launches;
 
     fn samples(times: &[f64]) -> Vec<(u32, Time)> {
         let time = |&ns: &f64| Time {
@@ -154,27 +206,37 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_within_the_drift_from_study_to_study_is_a_tie() {
+    fn a_difference_within_the_drift_from_study_to_study_is_undecided() {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        // The drift of two times is 2.8 %, so the interval reaches from 0.997 to 1.054.
         let both = [samples(&drift), samples(&drift.map(|t| t * 1.025))];
-        assert_eq!(standings(&both), [Some(Standing::Tied); 2]);
+        assert_eq!(standings(&both), [Some(Standing::Undecided); 2]);
+        let both = [samples(&drift), samples(&drift.map(|t| t * 1.02))];
+        assert_eq!(standings(&both), [Some(Standing::Equal); 2]);
     }
 
     #[test]
-    fn noise_and_small_differences_are_ties() {
+    fn intervals_that_contain_1_are_undecided_unless_they_are_narrow() {
         let a = samples(&[1.0, 1.2, 0.9, 1.1, 1.3, 0.8, 1.0]);
         let b = samples(&[1.1, 1.0, 1.1, 0.9, 1.4, 1.2, 0.9]);
         let c = samples(&[1.01, 1.212, 0.909, 1.111, 1.313, 0.808, 1.01]);
-        assert_eq!(standings(&[a, b, c]), [Some(Standing::Tied); 3]);
+        // `c` is 1 % slower in every round.
+        let expected = [Standing::Undecided, Standing::Undecided, Standing::Equal];
+        assert_eq!(standings(&[a, b, c]), expected.map(Some));
     }
 
     #[test]
-    fn ratios_up_to_the_noise_are_ties() {
+    fn ratios_up_to_the_noise_are_undecided() {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let both = [samples(&drift), samples(&drift.map(|t| t * 1.1))];
-        let tied = |noise| ranked(&both, noise)[1].and_then(|rank| rank.standing);
-        assert_eq!(tied(1.05), Some(Standing::Slower));
-        assert_eq!(tied(1.11), Some(Standing::Tied));
+        let second = |noise| ranked(&both, noise)[1].and_then(|rank| rank.standing);
+        assert_eq!(second(1.05), Some(Standing::Slower));
+        assert_eq!(second(1.11), Some(Standing::Undecided));
+        // Two times within 5 % are not equal if two measurements of one backend differ by more.
+        let both = [samples(&drift), samples(&drift.map(|t| t * 1.01))];
+        let second = |noise| ranked(&both, noise)[1].and_then(|rank| rank.standing);
+        assert_eq!(second(1.05), Some(Standing::Equal));
+        assert_eq!(second(1.06), Some(Standing::Undecided));
     }
 
     #[test]
@@ -233,8 +295,39 @@ mod tests {
         let found = standings(&[enough(1.0), clear, enough(1.5)]);
         assert_eq!(found, [Some(Standing::Best), slower, slower]);
         let found = standings(&[enough(1.0), more, enough(1.0)]);
-        assert_eq!(found, [Some(Standing::Tied), None, Some(Standing::Tied)]);
+        let expected = [Some(Standing::Undecided), None, Some(Standing::Equal)];
+        assert_eq!(found, expected);
         assert_eq!(standings(&[one]), [Some(Standing::Alone)]);
         assert_eq!(standings(&[vec![], vec![]]), [None, None]);
+    }
+
+    fn ranked_launches(launches: &[&[f64]]) -> Vec<Option<Standing>> {
+        let launches: Vec<Vec<Option<f64>>> = launches
+            .iter()
+            .map(|times| times.iter().copied().map(Some).collect())
+            .collect();
+        let launches: Vec<&[Option<f64>]> = launches.iter().map(Vec::as_slice).collect();
+        let times = times_over_launches(&launches);
+        let ranks = rank_launches(&launches, &times, NO_DIFFERENCE).into_iter();
+        ranks
+            .map(|rank| rank.and_then(|rank| rank.standing))
+            .collect()
+    }
+
+    #[test]
+    fn launches_are_compared_in_pairs() {
+        let [best, equal, slower] = [Standing::Best, Standing::Equal, Standing::Slower].map(Some);
+        let undecided = Some(Standing::Undecided);
+        // Every launch has its own speed.
+        let fast: &[f64] = &[1.0, 3.0, 2.0];
+        assert_eq!(ranked_launches(&[&[1.1, 3.3, 2.2], fast]), [slower, best]);
+        assert_eq!(ranked_launches(&[&[1.03, 3.1, 2.07], fast]), [equal; 2]);
+        assert_eq!(ranked_launches(&[&[1.0, 3.9, 2.0], fast]), [undecided; 2]);
+        // Two launches have a wide interval.
+        assert_eq!(ranked_launches(&[&[1.2, 3.4], &[1.0, 3.0]]), [undecided; 2]);
+        assert_eq!(ranked_launches(&[&[1.2, 3.6], &[1.0, 3.0]]), [slower, best]);
+        assert_eq!(ranked_launches(&[&[1.2], &[1.0]]), [None; 2]);
+        assert_eq!(ranked_launches(&[&[2.0], &[1.0]]), [slower, None]);
+        assert_eq!(ranked_launches(&[&[2.0, 1.0]]), [Some(Standing::Alone)]);
     }
 }

@@ -5,7 +5,7 @@ use sixfold_core::{Capabilities, Facts, TableBytes};
 
 use crate::ranking::NO_DIFFERENCE;
 use crate::read::ReadError;
-use crate::statistics::undisturbed;
+use crate::statistics::{median, undisturbed};
 
 /// All samples (timed series of runs) of one operation on one backend. All lists except `first_ns`
 /// contain one value for each sample.
@@ -22,7 +22,10 @@ pub struct Samples {
     /// True if these samples belong to the control. The control is a second measurement of one
     /// backend, which shows the noise.
     pub control: bool,
-    /// For each sample, the number of the round.
+    /// For each sample, the number of its launch, from 0; empty if there is one launch.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub launches: Vec<u32>,
+    /// For each sample, the number of the round. Two launches have no round in common.
     pub rounds: Vec<u32>,
     /// For each sample, the processor time of one run, in nanoseconds. `None` if the processor time
     /// is unknown.
@@ -203,7 +206,7 @@ pub struct ResultRow {
     /// The comparison of the time with the times of the other backends; in `orders`, with the other
     /// orders on this backend. `None` if nothing was measured, if the backend did other work than the
     /// others, or if there are too few samples: a backend with fewer than four samples is neither
-    /// the fastest nor tied with it, and it is slower only if it takes at least twice the time.
+    /// the fastest nor equal to it, and it is slower only if it takes at least twice the time.
     pub standing: Option<Standing>,
     /// The time of this backend divided by the time of the fastest backend. The fastest backend has
     /// the ratio 1.
@@ -212,6 +215,10 @@ pub struct ResultRow {
     pub ratio_ci_low: Option<f64>,
     /// The upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ratio_ci_high: Option<f64>,
+    /// The time in each launch, if there are several: the corrected median of its samples. `None` in a launch
+    /// without a time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub launch_ns: Vec<Option<f64>>,
     /// The number of samples (timed series of runs).
     pub samples: usize,
     /// The number of consecutive runs in one sample.
@@ -255,9 +262,14 @@ impl ResultRow {
         (median > 0.0).then(|| first / median)
     }
 
-    /// Returns whether the backend is the fastest, or has no clear difference to the fastest.
+    /// Returns whether the backend is the fastest, or shares the first place.
     pub fn is_fastest(&self) -> bool {
-        matches!(self.standing, Some(Standing::Best | Standing::Tied))
+        self.standing == Some(Standing::Best) || self.shares_first()
+    }
+
+    /// Returns whether the backend [shares the first place](Standing::shares_first).
+    pub fn shares_first(&self) -> bool {
+        self.standing.is_some_and(Standing::shares_first)
     }
 }
 
@@ -278,6 +290,21 @@ pub struct Control {
     pub worst: f64,
 }
 
+impl Control {
+    /// Creates a control from the ratios of the operations; `None` without operations.
+    pub fn new(backend: &str, operations: Vec<ControlRow>) -> Option<Self> {
+        let differences = || operations.iter().map(ControlRow::difference);
+        let typical = median(differences().collect())?;
+        let worst = differences().fold(1.0, f64::max);
+        Some(Self {
+            backend: backend.to_owned(),
+            operations,
+            typical,
+            worst,
+        })
+    }
+}
+
 /// Maximum acceptable ratio between the two columns of a control.
 const UNSTEADY: f64 = 1.05;
 
@@ -294,6 +321,9 @@ pub struct ControlRow {
     pub ci_low: Option<f64>,
     /// The upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
+    /// The ratio in each launch, if there are several; `None` in a launch without both times.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub launches: Vec<Option<f64>>,
 }
 
 impl ControlRow {
@@ -365,14 +395,27 @@ pub enum Agreement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// The backend is measurably faster than all other backends.
+    /// The fastest: all other backends are measurably slower.
     Best,
-    /// No backend is measurably faster, and at least one backend is equally fast.
-    Tied,
-    /// Another backend is measurably faster.
+    /// As fast as the fastest: the whole 95 % interval of the ratio lies within 5 % of 1. The fastest backend
+    /// is equal if another one is equal to it and none is undecided.
+    Equal,
+    /// Not decided: the 95 % interval of the ratio to the fastest contains 1 and reaches beyond 5 %, or the ratio
+    /// is not above the noise. The fastest backend is undecided if another one is.
+    #[serde(alias = "tied")]
+    Undecided,
+    /// Measurably slower than the fastest backend.
     Slower,
     /// No other backend was measured.
     Alone,
+}
+
+impl Standing {
+    /// Returns whether the backend shares the first place, because it is equal to the fastest or because it is
+    /// not decided which is faster.
+    pub const fn shares_first(self) -> bool {
+        matches!(self, Self::Equal | Self::Undecided)
+    }
 }
 
 /// Returns an error if the lists of samples have different lengths, or for an impossible time.
@@ -380,7 +423,11 @@ pub(crate) fn check_samples(samples: &[Samples]) -> Result<(), ReadError> {
     for one in samples {
         let of = format!("the samples of {} on {}", one.operation, one.backend);
         let cpu = one.cpu_ns.as_ref().unwrap_or(&one.wall_ns);
-        let optional = [one.slowdowns.len(), one.faults.as_ref().map_or(0, Vec::len)];
+        let optional = [
+            one.slowdowns.len(),
+            one.faults.as_ref().map_or(0, Vec::len),
+            one.launches.len(),
+        ];
         let fits = |len: usize| len == one.rounds.len();
         let fit = fits(one.wall_ns.len()) && fits(cpu.len());
         if !fit || !optional.into_iter().all(|len| len == 0 || fits(len)) {

@@ -48,8 +48,11 @@ pub struct RunSettings {
     pub operations: Vec<String>,
     /// Time budget of the finding, in seconds; `None` if the number of rounds was given instead.
     pub budget_s: Option<f64>,
-    /// The number of rounds; `None` if the time budget was given instead.
+    /// The number of rounds of each launch; `None` if the time budget was given instead.
     pub rounds: Option<NonZeroU32>,
+    /// The number of launches: fresh processes of the command that measured the same. `None` if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub launches: Option<NonZeroU32>,
     /// Seed of the random numbers. The seed determines the order in which samples take elements,
     /// the order of the measurements, and the order `shuffled`, but not the size of a sample.
     pub seed: u64,
@@ -82,6 +85,34 @@ impl Run {
         self.operation(operation)?.scheme.as_deref()
     }
 
+    /// Adds the launches of `others`, which measured the same.
+    pub fn add_launches(&mut self, others: &[&Self]) {
+        let launches = |settings: &RunSettings| settings.launches.map_or(1, NonZeroU32::get);
+        let settings = others.iter().map(|other| &other.settings);
+        let count = settings.clone().map(launches).sum::<u32>() + launches(&self.settings);
+        let budget_s = settings.map(|settings| settings.budget_s);
+        let budget_s = budget_s.fold(self.settings.budget_s, |sum, own| Some(sum? + own?));
+        self.settings.budget_s = budget_s;
+        self.settings.launches = NonZeroU32::new(count).filter(|_| count > 1);
+    }
+
+    /// Returns an error if `other` has other settings than the seed and the budget, so that it is no further
+    /// launch of this run.
+    pub(crate) fn check_repeats(&self, other: &Self) -> Result<(), MergeError> {
+        let theirs = RunSettings {
+            seed: self.settings.seed,
+            budget_s: other.settings.budget_s.and(self.settings.budget_s),
+            launches: self.settings.launches,
+            ..other.settings.clone()
+        };
+        self.settings.check_equal(&theirs)?;
+        let [ours, theirs] = [self, other].map(|run| run.environment.memory_settings());
+        match ours == theirs {
+            true => Ok(()),
+            false => Err(MergeError::other_memory(ours, theirs)),
+        }
+    }
+
     /// Returns whether the command, the settings and the environment are the same. The start may
     /// differ.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
@@ -92,12 +123,18 @@ impl Run {
 }
 
 impl RunSettings {
-    /// Returns the time budget or the number of rounds as text, such as `20 s` or `5 rounds`.
+    /// Returns the time budget or the number of rounds as text, such as `20 s`, `5 rounds` or
+    /// `60 s in 8 launches`.
     pub fn effort_text(&self) -> String {
-        match (self.budget_s, self.rounds) {
+        let effort = match (self.budget_s, self.rounds) {
             (_, Some(rounds)) => counted(rounds.get() as usize, "round", "rounds"),
             // The budgets of the meshes of a folder are quotients.
             (budget_s, None) => format!("{} s", (100.0 * budget_s.unwrap_or(0.0)).round() / 100.0),
+        };
+        let of_each = if self.rounds.is_some() { " each" } else { "" };
+        match self.launches {
+            Some(launches) => format!("{effort}{of_each} in {launches} launches"),
+            None => effort,
         }
     }
 

@@ -22,17 +22,16 @@
 
 use std::f64::consts::SQRT_2;
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
 /// Number of batches. With fewer samples, each sample is a batch.
 const BATCHES: usize = 6;
 /// Minimum number of samples for an interval that is not wide because of their number.
 pub const MIN_SAMPLES: usize = BATCHES;
 /// Minimum number of samples for any interval.
 const FEWEST_SAMPLES: usize = 3;
-/// The 97.5 % quantiles of Student's distribution with [`FEWEST_SAMPLES`] − 1 to [`BATCHES`] − 1
-/// degrees of freedom.
-const STUDENT: [f64; BATCHES - FEWEST_SAMPLES + 1] = [4.302_653, 3.182_446, 2.776_445, 2.570_582];
 /// The 97.5 % quantile of the normal distribution.
-const NORMAL: f64 = 1.959_964;
+pub(crate) const NORMAL: f64 = 1.959_964;
 /// Standard deviation of the drift from study to study that the samples of one study do not show,
 /// relative to the time. Every confidence interval includes this drift.
 ///
@@ -93,6 +92,15 @@ impl Median {
         })
     }
 
+    /// Returns a value without an error.
+    pub(crate) const fn exactly(value: f64) -> Self {
+        Self {
+            value,
+            least: value,
+            interval: Some([value; 2]),
+        }
+    }
+
     /// Returns this median with `value`, and with an interval of the same relative width. The least value is
     /// not above it, also if both differ only by rounding.
     pub fn moved_to(self, value: f64) -> Self {
@@ -124,7 +132,9 @@ impl Median {
 /// than three samples, or if a sample is not finite. O(n log n).
 fn half_width(samples: &[f64], drift: f64) -> Option<f64> {
     let batches = samples.len().min(BATCHES);
-    let student = STUDENT.get(batches.checked_sub(FEWEST_SAMPLES)?)?;
+    if batches < FEWEST_SAMPLES {
+        return None;
+    }
     let samples = match samples.len() > BATCHES {
         true => without_outliers(samples)?,
         false => samples.to_vec(), // too few to distinguish outliers from the usual variation
@@ -138,7 +148,7 @@ fn half_width(samples: &[f64], drift: f64) -> Option<f64> {
     let mean = medians.iter().sum::<f64>() / count;
     let squares: f64 = medians.iter().map(|median| (median - mean).powi(2)).sum();
     let error = (squares / (count - 1.0) / count).sqrt();
-    let half_width = (student * error).hypot(NORMAL * drift);
+    let half_width = (student(count - 1.0) * error).hypot(NORMAL * drift);
     half_width.is_finite().then_some(half_width)
 }
 
@@ -201,25 +211,18 @@ pub fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let squares: f64 = logs.iter().map(|log| (log - mean).powi(2)).sum();
     let interval = (count >= FEWEST_SAMPLES).then(|| {
         let freedom = count as f64 - 1.0;
-        let half_width = student(count) * (squares / freedom / count as f64).sqrt();
+        let half_width = student(freedom) * (squares / freedom / count as f64).sqrt();
         [mean - half_width, mean + half_width]
     });
     Some((mean.exp(), interval.map(|ends| ends.map(f64::exp))))
 }
 
-/// Returns the 97.5 % quantile of Student's distribution for `count` values: with `count` − 1 degrees
-/// of freedom. `count` must be at least [`FEWEST_SAMPLES`].
-fn student(count: usize) -> f64 {
-    if let Some(&quantile) = STUDENT.get(count - FEWEST_SAMPLES) {
-        return quantile;
-    }
-    // The expansion of Cornish and Fisher about the normal quantile. Its error is below 0.1 % for 6
-    // or more degrees of freedom.
-    let (z, freedom) = (NORMAL, count as f64 - 1.0);
-    z + (z.powi(3) + z) / (4.0 * freedom)
-        + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom.powi(2))
-        + (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z)
-            / (384.0 * freedom.powi(3))
+/// Returns the 97.5 % quantile of Student's distribution with `freedom` degrees of freedom; infinity if there
+/// are none.
+pub(crate) fn student(freedom: f64) -> f64 {
+    const QUANTILE: f64 = 0.975;
+    StudentsT::new(0.0, 1.0, freedom)
+        .map_or(f64::INFINITY, |students| students.inverse_cdf(QUANTILE))
 }
 
 /// Returns the ratio of the medians of two series without common rounds, and its 95 % interval: the

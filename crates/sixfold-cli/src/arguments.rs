@@ -81,7 +81,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
 Measurement: Each round runs every operation once on every backend, in random order. The clock
 measures the processor time of the thread. The table shows the median over the rounds. In each
 round, one backend is measured twice. The difference between the two times of this backend is the
-noise. Differences between backends that are smaller than the noise count as ties.
+noise. A difference between backends that is smaller than the noise is not decided.
 
 Budget and rounds: With --budget, as many rounds are run as fit into the time. What takes too long is
 sampled, estimated or left out. With --rounds, exactly this number of rounds of everything is run,
@@ -270,6 +270,9 @@ pub(crate) struct Study {
     /// Measure exactly N rounds of everything, without a time limit
     #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
     pub(crate) rounds: Option<NonZeroU32>,
+    /// Measure in N fresh processes [default: by the budget, 5 for 20s]
+    #[arg(long, value_name = "N", value_parser = launches, allow_hyphen_values = true)]
+    pub(crate) launches: Option<NonZeroU32>,
     /// Seed of the random order and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -465,6 +468,12 @@ fn duration(text: &str) -> Result<Duration, String> {
         Some(_) => Err("a time must be above 0 and at most a week".into()),
         None => Err("write a time as 20s, 500ms or 2m".into()),
     }
+}
+
+/// Parses a number of launches.
+fn launches(text: &str) -> Result<NonZeroU32, String> {
+    let parsed = text.trim().parse();
+    parsed.map_err(|_| "write a whole number of launches, at least 1".to_owned())
 }
 
 /// Parses a number of rounds.

@@ -11,6 +11,8 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
+    const UNSUPPORTED: u8 = 3;
+
     /// Returns a failure for wrong usage or unusable input.
     pub(crate) fn usage(message: impl Display) -> Self {
         Self {
@@ -35,8 +37,13 @@ impl Failure {
     /// Returns a failure for work that the selected backends do not support.
     pub(crate) fn unsupported(message: impl Display) -> Self {
         Self {
-            code: 3,
+            code: Self::UNSUPPORTED,
             message: message.to_string(),
         }
+    }
+
+    /// Returns whether this is a failure for work that the selected backends do not support.
+    pub(crate) const fn is_unsupported(&self) -> bool {
+        self.code == Self::UNSUPPORTED
     }
 }

@@ -43,7 +43,7 @@
 //! | code | means |
 //! |---|---|
 //! | 0 | success |
-//! | 1 | negative answer: no backend qualifies, a figure is slower, results differ, or a file does not keep a repair |
+//! | 1 | negative answer: no backend qualifies, a figure is slower, results differ, a launch died, or a file does not keep a repair |
 //! | 2 | wrong usage or unusable input |
 //! | 3 | not supported: none of the selected backends can hold the mesh |
 //! | 4 | interrupted; finished results are kept |
@@ -63,6 +63,7 @@ mod generate;
 mod growth;
 mod help;
 mod inspect;
+mod launches;
 mod left_out;
 mod listed_folder;
 mod load;
@@ -131,6 +132,7 @@ impl<C: Heap + AllocationCounter> AllocatorCounters for C {}
 /// Runs the command `sixfold`.
 #[doc(hidden)]
 pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
+    launches::note_start();
     let matches = help::definition().try_get_matches_from(words());
     let arguments = matches.and_then(|matches| Arguments::from_arg_matches(&matches));
     let done = match arguments.map(|arguments| arguments.command) {

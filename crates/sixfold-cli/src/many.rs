@@ -13,11 +13,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_results::{Failed, FailureKind, Finding, Report, Results};
-use sixfold_study::{Settings, StudyError, StudyMesh};
+use sixfold_study::{Settings, StudyMesh};
 
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
+use crate::launches;
 use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
@@ -25,7 +26,7 @@ use crate::mesh_files::shown;
 use crate::mesh_picture::with_picture;
 use crate::paper;
 use crate::progress::Bar;
-use crate::study::finding;
+use crate::study::{finding, measure};
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize, take_notices};
 use sixfold_results::numbers::counted;
 
@@ -35,7 +36,7 @@ pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
 use folder::Folder;
-pub(crate) use meshes::{Mesh, find_meshes};
+pub(crate) use meshes::{Mesh, find_mesh, find_meshes};
 
 /// The text of [`FailureKind::NoneHolds`].
 const NONE_HOLDS: &str = "none of the selected backends can hold the mesh: see `sixfold inspect`, or repair the mesh with \
@@ -226,20 +227,24 @@ impl FolderRun<'_> {
                 return failed(FailureKind::NotMeasured, reason);
             }
         };
-        let bar = Bar::new();
-        let report = sixfold_study::study(study_mesh, self.settings, self.stop, &mut |at| {
-            let stage = format!("{position}, {}: {}", mesh.name, at.stage);
-            bar.show(sixfold_study::Progress {
-                stage: &stage,
-                ..at
-            });
-        });
+        let faces = study_mesh.polygons.face_count();
+        let launches = match launches::count(self.arguments.launches, self.settings.effort, faces) {
+            Ok(launches) => launches,
+            Err(failure) => return failed(FailureKind::NotMeasured, failure.message),
+        };
+        let bar = Bar::after(&format!("{position}, {}: ", mesh.name));
+        let name = Some(mesh.name.as_str());
+        let show = |done, what: &str| bar.set(done, what);
+        let report = measure(study_mesh, self.settings, launches, name, self.stop, &show);
         bar.clear();
         match report {
             Ok(report) if report.interrupted && report.results.is_empty() => None,
             Ok(report) => Some(Ok(report)),
-            Err(StudyError::NoneHolds { .. }) => failed(FailureKind::NoneHolds, NONE_HOLDS.into()),
-            Err(error) => failed(FailureKind::NotMeasured, error.to_string()),
+            Err(failure) if failure.is_unsupported() => {
+                failed(FailureKind::NoneHolds, NONE_HOLDS.into())
+            }
+            Err(_) if self.stop.load(Ordering::Relaxed) => None,
+            Err(failure) => failed(FailureKind::NotMeasured, failure.message),
         }
     }
 }

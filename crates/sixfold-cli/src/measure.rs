@@ -12,12 +12,13 @@ use sixfold_study::StudyMesh;
 
 use crate::arguments::ResultFiles;
 use crate::failure::Failure;
+use crate::launches::{self, Launch};
 use crate::mesh_picture::with_picture;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{INTERRUPTED, interrupt_flag};
 use crate::text::{TextOutput, print_notice, print_stderr, take_notices};
 
-/// The exit code if backends found different results for the same work.
+/// The exit code if backends found different results for the same work, or if a launch died.
 const MISMATCH: u8 = 1;
 
 /// A command that writes results, between the opening of its files and the writing of the results.
@@ -50,6 +51,18 @@ impl Session {
         }
         // Set the handler before the drafts are created, so that Ctrl-C always deletes the drafts.
         let stop = interrupt_flag(heap);
+        if let Some(launch) = Launch::current() {
+            launch.stop_with_parent(&stop);
+            return Ok(Self {
+                stop,
+                text: TextOutput::new(false),
+                files: OpenFiles {
+                    json: Output::open_if(Some(&PathBuf::from("-")))?,
+                    csv: None,
+                    samples_csv: None,
+                },
+            });
+        }
         let uses_stdout = files
             .options()
             .iter()
@@ -68,8 +81,8 @@ impl Session {
     /// Adds a picture to a mesh if the results are written as a document, which reports are drawn from.
     pub(crate) fn drawn(&self, study_mesh: StudyMesh) -> StudyMesh {
         match self.files.json {
-            Some(_) => with_picture(study_mesh),
-            None => study_mesh,
+            Some(_) if Launch::current().is_none() => with_picture(study_mesh),
+            _ => study_mesh,
         }
     }
 
@@ -164,9 +177,11 @@ pub(crate) fn exit_code(
             false => "interrupted: finished results are kept",
         });
     }
-    Ok(match others {
-        0 => code,
-        _ => ExitCode::from(MISMATCH),
+    // The result is not what was asked for.
+    let is_short = others > 0 || launches::has_died();
+    Ok(match is_short && code == ExitCode::SUCCESS {
+        true => ExitCode::from(MISMATCH),
+        false => code,
     })
 }
 

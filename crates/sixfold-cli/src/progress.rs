@@ -1,5 +1,6 @@
 //! Progress bars on a terminal, progress as lines, and the handling of Ctrl-C.
 
+use std::cell::Cell;
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,6 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use sixfold_results::Policy;
 use sixfold_study::{HeapGuard, Progress};
 
+use crate::launches::Launch;
 use crate::output::exit_without_drafts;
 use crate::text::{print_stderr, sanitize};
 
@@ -16,12 +18,16 @@ use crate::text::{print_stderr, sanitize};
 const STEPS: u64 = 1000;
 
 /// The environment variable that asks for progress as lines, if its value is `lines`.
-const PROGRESS: &str = "SIXFOLD_PROGRESS";
+pub(crate) const PROGRESS: &str = "SIXFOLD_PROGRESS";
+/// The value of [`PROGRESS`] that asks for lines.
+pub(crate) const LINES: &str = "lines";
+/// The start of a line of progress.
+pub(crate) const PROGRESS_MARK: &str = "progress: ";
 
 /// Prints a step as a line, if the environment asks for lines.
 fn print_step(what: &str) {
-    if std::env::var_os(PROGRESS).is_some_and(|value| value == "lines") {
-        print_stderr(&format!("progress: {}", sanitize(what)));
+    if std::env::var_os(PROGRESS).is_some_and(|value| value == LINES) {
+        print_stderr(&format!("{PROGRESS_MARK}{}", sanitize(what)));
     }
 }
 
@@ -30,6 +36,8 @@ fn print_step(what: &str) {
 pub(crate) struct Bar {
     bar: Option<ProgressBar>,
     prefix: String,
+    /// The last percentage that a launch told the first process.
+    told: Cell<u64>,
 }
 
 impl Bar {
@@ -48,6 +56,7 @@ impl Bar {
         Self {
             bar,
             prefix: prefix.to_owned(),
+            told: Cell::new(u64::MAX),
         }
     }
 
@@ -55,6 +64,10 @@ impl Bar {
     pub(crate) fn set(&self, done: f64, what: &str) {
         let Some(bar) = &self.bar else {
             let percent = (100.0 * done) as u64;
+            // The first process wakes up for each line, which would disturb the samples.
+            if Launch::current().is_some() && self.told.replace(percent) == percent {
+                return;
+            }
             return print_step(&format!("{percent} % {}{what}", self.prefix));
         };
         bar.set_position((done * STEPS as f64) as u64);
@@ -62,13 +75,7 @@ impl Bar {
     }
 
     pub(crate) fn show(&self, progress: Progress<'_>) {
-        let Progress {
-            done,
-            stage,
-            task,
-            backend,
-        } = progress;
-        self.set(done, &format!("{stage} {task} on {backend}"));
+        self.set(progress.done, &progress.step());
     }
 
     pub(crate) fn clear(&self) {

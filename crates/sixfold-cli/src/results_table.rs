@@ -181,13 +181,13 @@ fn first_time(rows: &[&ResultRow]) -> impl Fn(&ResultRow) -> Option<f64> + use<>
 }
 
 const UNSURE: &str = "ratio up to: upper end of the 95 % interval (of this run) of the ratio to the fastest, \
-                      for = with a ratio above 1.1";
-/// A tie with a larger ratio is shown with the end of its interval.
+                      for ? with a ratio above 1.1";
+/// An undecided backend with a larger ratio is shown with the end of its interval.
 const CLOSE: f64 = 1.1;
 
-/// Returns the upper end of the interval of the ratio, for a tie of times that are not close.
+/// Returns the upper end of the interval of the ratio, if it is not decided whether the backend is the fastest, and the times are not close.
 fn largest_ratio(row: &ResultRow) -> Option<f64> {
-    let is_unsure = row.standing == Some(Standing::Tied) && row.ratio_to_best? > CLOSE;
+    let is_unsure = row.standing == Some(Standing::Undecided) && row.ratio_to_best? > CLOSE;
     row.ratio_ci_high.filter(|_| is_unsure)
 }
 

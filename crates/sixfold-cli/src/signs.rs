@@ -76,7 +76,8 @@ impl Signs {
     pub(crate) fn standing(&mut self, standing: Option<Standing>) -> String {
         match standing {
             Some(Standing::Best) => self.record('*').into(),
-            Some(Standing::Tied) => self.record('=').into(),
+            Some(Standing::Equal) => self.record('=').into(),
+            Some(Standing::Undecided) => self.record('?').into(),
             _ => String::new(),
         }
     }
@@ -95,7 +96,8 @@ impl Signs {
     pub(crate) fn legend(&self) -> String {
         let meanings = [
             ('*', self.best),
-            ('=', "shares the first place: no clear difference"),
+            ('=', "equal: within 5 % of the fastest"),
+            ('?', "undecided: perhaps the fastest"),
             ('~', "measured on a sample of the elements"),
             ('≥', "lower bound: not run, so not ranked"),
             ('–', "no time: see the notes"),
@@ -165,9 +167,9 @@ mod tests {
         let sampled = ResultRow {
             sampled: true,
             agreement: Agreement::Merged,
-            ..row(Some(Standing::Tied))
+            ..row(Some(Standing::Undecided))
         };
-        assert_eq!(signs.figure(&sampled), "=~12,300m");
+        assert_eq!(signs.figure(&sampled), "?~12,300m");
         let estimated = ResultRow {
             median_ns: None,
             ns_per_element: None,
@@ -183,8 +185,8 @@ mod tests {
         signs.explain("more");
         signs.explain("more");
         let legend = signs.legend().replace('\n', "; ");
-        let expected = "* fastest; = shares the first place: no clear difference; ~ measured on a sample of \
-                        the elements; ≥ lower bound: not run, so not ranked; m the backend merges \
+        let expected = "* fastest; ? undecided: perhaps the fastest; ~ measured on a sample of the elements; \
+                        ≥ lower bound: not run, so not ranked; m the backend merges \
                         vertices at one position; more";
         assert_eq!(legend, expected);
     }

@@ -1,7 +1,8 @@
 //! `sixfold study`: measures operations on every backend and shows the result.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_results::{BackendReport, Environment, Finding, Report, Run, Timer};
 use sixfold_study::{Settings, StudyError, StudyMesh};
@@ -9,6 +10,7 @@ use sixfold_study::{Settings, StudyError, StudyMesh};
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
+use crate::launches::{self, Launch};
 use crate::left_out::left_out_notes;
 use crate::listed_folder::ListedFolder;
 use crate::load;
@@ -21,23 +23,30 @@ use crate::text::{TextOutput, hanging_indent};
 use sixfold_results::numbers::counted;
 
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
+    let launch = Launch::current();
+    let effort = arguments.effort(1);
     let settings = Settings {
         backends: arguments.backends.clone(),
         externals: arguments.externals.clone(),
         external_timeout: arguments.external_timeout,
         operations: arguments.operations.clone(),
-        effort: arguments.effort(1),
-        seed: arguments.seed,
+        effort: launch.map_or(effort, |launch| launch.effort(effort)),
+        seed: launch.map_or(arguments.seed, |launch| launch.seed(arguments.seed)),
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,
         ..Settings::default()
     };
     let several = arguments.meshes.len() > 1 || arguments.meshes.iter().any(|path| path.is_dir());
-    if several || arguments.report.is_some() {
+    if (several || arguments.report.is_some()) && launch.is_none() {
         return many::run(arguments, &settings);
     }
-    let mesh = arguments.meshes.first().map(PathBuf::as_path);
-    let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
+    let found = match launch.and_then(|launch| launch.mesh.as_deref()) {
+        Some(name) => many::find_mesh(&arguments.meshes, name)?,
+        None => arguments.meshes.first().cloned(),
+    };
+    let mesh = found.as_deref();
+    let figures = arguments.figures.as_ref().filter(|_| launch.is_none());
+    let paper = ListedFolder::open_if(figures)?;
     let studied = run_single(arguments, &settings, mesh, paper.as_ref());
     if let (Err(_), Some(paper)) = (&studied, &paper) {
         paper.remove_if_empty();
@@ -62,10 +71,21 @@ fn run_single(
     let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
     print_before_measuring(&study_mesh, settings, &mut session.text);
+    let faces = study_mesh.polygons.face_count();
+    let count = launches::count(arguments.launches, settings.effort, faces)?;
     let bar = Bar::new();
-    let report = sixfold_study::study(&study_mesh, settings, &session.stop, &mut |at| bar.show(at));
+    let measured = measure(
+        &study_mesh,
+        settings,
+        count,
+        None,
+        &session.stop,
+        &|done, what| {
+            bar.set(done, what);
+        },
+    );
     bar.clear();
-    match report {
+    match measured {
         Ok(report) => {
             print(&report, &mut session.text);
             let mut results = finding(report, arguments).into();
@@ -74,13 +94,48 @@ fn run_single(
             exit_code(written, &results, results.is_interrupted())
         }
         // If every backend refuses the mesh, the list of reasons is the result.
-        Err(error @ StudyError::NoneHolds { .. }) => {
+        Err(failure) if failure.is_unsupported() => {
             let refusals = refusals(&study_mesh, settings)?;
             session.write(&mut finding(refusals, arguments).into())?;
-            Err(Failure::unsupported(error))
+            Err(failure)
         }
-        Err(error) => Err(Failure::usage(error)),
+        Err(failure) => Err(failure),
     }
+}
+
+/// Studies a mesh: in this process, or in several launches, which read it again. `name` is its name if the
+/// command has several meshes. `show` is called with the finished part, from 0 to 1, and the current step.
+pub(crate) fn measure(
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    launches: u32,
+    name: Option<&str>,
+    stop: &AtomicBool,
+    show: &dyn Fn(f64, &str),
+) -> Result<Report, Failure> {
+    if launches == 1 {
+        let report = sixfold_study::study(study_mesh, settings, stop, &mut |at| {
+            show(at.done, &at.step())
+        });
+        return report.map_err(|error| match error {
+            StudyError::NoneHolds { .. } => Failure::unsupported(error),
+            error => Failure::usage(error),
+        });
+    }
+    let results = launches::run(launches, settings.effort, name, stop, show)?;
+    let report = results
+        .findings
+        .into_iter()
+        .find_map(|finding| match finding {
+            Finding::Study(report) => Some(*report),
+            _ => None,
+        });
+    let mut report = report.ok_or_else(|| Failure::usage("interrupted before the first result"))?;
+    report.run.settings.budget_s = settings.run_settings().budget_s;
+    report.mesh = study_mesh.report();
+    // An interruption between two launches is in none of them.
+    report.interrupted |= stop.load(Ordering::Relaxed);
+    Ok(report)
 }
 
 /// Completes a study by the arguments that only the command knows.

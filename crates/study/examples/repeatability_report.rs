@@ -1,5 +1,5 @@
 //! Repeats one study many times and reports how much the results vary. For each operation, the
-//! report counts the studies in which each backend is the fastest or tied with the fastest. The
+//! report counts the studies in which each backend is the fastest or shares the first place. The
 //! report counts the 95 % confidence intervals that contain the median of all studies. The report
 //! counts how often a study finds a difference of more than 10 %. The report also estimates how
 //! much the speed of the machine drifts between studies.
@@ -96,7 +96,7 @@ fn report_text(reports: &[Report], now: &Run, seconds: u64, each: f64) -> String
 
 fn winners(reports: &[Report]) -> String {
     let mut text = String::from(
-        "## Best backends\n\n| operation | number of studies in which a backend is best or tied with the best |\n|---|---|\n",
+        "## Best backends\n\n| operation | number of studies in which a backend is best or shares the first place |\n|---|---|\n",
     );
     for operation in Relation::ALL.map(Operation::Relation) {
         let mut named: BTreeMap<String, [usize; 2]> = BTreeMap::new();
@@ -106,18 +106,20 @@ fn winners(reports: &[Report]) -> String {
         {
             match row.standing {
                 Some(Standing::Best) => named.entry(row.backend.clone()).or_default()[0] += 1,
-                Some(Standing::Tied) => named.entry(row.backend.clone()).or_default()[1] += 1,
+                Some(Standing::Equal | Standing::Undecided) => {
+                    named.entry(row.backend.clone()).or_default()[1] += 1
+                }
                 _ => {}
             }
         }
         let mut named: Vec<_> = named.into_iter().collect();
-        named.sort_by_key(|(_, [best, tied])| std::cmp::Reverse((*best, *tied)));
+        named.sort_by_key(|(_, [best, shared])| std::cmp::Reverse((*best, *shared)));
         let cells: Vec<String> = named
             .into_iter()
-            .map(|(backend, [best, tied])| match (best, tied) {
+            .map(|(backend, [best, shared])| match (best, shared) {
                 (best, 0) => format!("{backend} best {best}"),
-                (0, tied) => format!("{backend} tied {tied}"),
-                (best, tied) => format!("{backend} best {best}, tied {tied}"),
+                (0, shared) => format!("{backend} shared {shared}"),
+                (best, shared) => format!("{backend} best {best}, shared {shared}"),
             })
             .collect();
         let _ = writeln!(text, "| {operation} | {} |", cells.join("; "));

@@ -33,6 +33,7 @@ mod engine;
 mod external;
 mod inspect;
 mod labs;
+mod launches;
 pub mod packages;
 mod refusal;
 #[cfg(test)]
@@ -58,6 +59,7 @@ pub use labs::pick::{
 };
 pub use labs::study::{Settings, StudyError, study};
 pub use labs::why::{Timing, WhySettings, why};
+pub use launches::pool_launches;
 pub use runner::{BackendRun, BackendRunner};
 pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict};
 pub use sixfold_workload::{

@@ -77,8 +77,8 @@ fn caption(matrix: &Matrix) -> String {
             false => "Time divided by that of the fastest structure of the row. Dark is fast.",
         }.to_owned()),
         (
-            has(&|cell| cell.is_best() || cell.is_tied()),
-            "The fastest, and those tied with it, are bold.".into(),
+            has(&|cell| cell.is_best() || cell.shares_first()),
+            "The fastest, and those that share the first place, are bold.".into(),
         ),
         (
             has(&|cell| cell.ratio > Some(MAX_RATIO) && !cell.is_bound()),
@@ -112,7 +112,7 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str
         (None, Source::Impossible) => "not possible".into(),
         (None, _) => "not measured".into(),
     };
-    let lead = cell.is_best() || cell.is_tied();
+    let lead = cell.is_best() || cell.shares_first();
     let label = Style::new(11).middle().bold(lead);
     let centre = [x + COLUMN / 2.0, y + 15.0];
     canvas.mark(

@@ -58,7 +58,7 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         standing: match (ranked.ratio_to_best, ranked.tied_with_best) {
             _ if ranked.estimated => None,
             (1.0, _) => Some(Standing::Best),
-            (_, true) => Some(Standing::Tied),
+            (_, true) => Some(Standing::Undecided),
             _ => Some(Standing::Slower),
         },
         ..Cell::new(
@@ -229,7 +229,7 @@ fn caption(cells: &[&Cell], note: &str) -> String {
             format!("A bar with a gap is longer than {}.", times(reach)),
         ),
         (has(|cell| cell.interval.is_some()), "Thin lines are 95 % intervals.".into()),
-        (has(|cell| cell.is_best() || cell.is_tied()), "The fastest, and those tied with it, are bold.".into()),
+        (has(|cell| cell.is_best() || cell.shares_first()), "The fastest, and those that share the first place, are bold.".into()),
         (
             has(|cell| cell.source == Source::Sampled),
             "~: measured on some of the elements.".into(),
@@ -294,7 +294,7 @@ fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Ca
 /// Draws a bar with its name and its ratio. `y` is the upper end of the bar.
 fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
     let (left, baseline) = (BARS[0], y + 11.0);
-    let lead = cell.is_best() || cell.is_tied();
+    let lead = cell.is_best() || cell.shares_first();
     let label = Style::new(12).bold(lead);
     canvas.text([left - 6.0, baseline], &cell.backend, label.end());
     let Some(ratio) = cell.ratio else {
@@ -347,7 +347,7 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
         text_from = BARS[1];
     }
     let text = match cell.times_text() {
-        text if cell.is_tied() => format!("{text} tied"),
+        text if cell.shares_first() => format!("{text} {}", cell.shared_word()),
         text => text,
     };
     debug_assert!(text_from + text_width(&text, 12) < WIDTH + 20.0, "{text}");

@@ -16,8 +16,8 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
                 caption {
                     span {
                         "Times are divided by the shortest of the column. A longer bar costs more, on a logarithmic scale that ends at \
-                         10 times the least; bars with a gap are longer. " b { "● best" } " · " b { "◐ tied" } ": no clear difference \
-                         from the best · ≥: lower bound, not ranked."
+                         10 times the least; bars with a gap are longer. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
+                         or undecided · ≥: lower bound, not ranked."
                     }
                 }
                 thead {
@@ -59,7 +59,7 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
         td class=(class) style=(style) {
             @match figure.rank {
                 Rank::Best => { span.mark { "● " } b { (figure.text) } }
-                Rank::Tied => { span.mark { "◐ " } b { (figure.text) } }
+                Rank::Shared => { span.mark { "◐ " } b { (figure.text) } }
                 _ => { (figure.text) }
             }
         }
@@ -165,7 +165,7 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
                 Some(_) => {
                     @let text = cell.times_text();
                     @if cell.is_best() { b { (text) } } @else { (text) }
-                    @if cell.is_tied() { " " span.mark { "tied" } }
+                    @if cell.shares_first() { " " span.mark { (cell.shared_word()) } }
                     @if let Some(interval) = cell.interval_text() { small { (interval) } }
                 }
                 None => {

@@ -421,9 +421,10 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
     }
     if rows.iter().any(|row| row.row.standing.is_some()) {
         sentences.push(format!(
-            "A backend is tied with the fastest if its ratio is at most the noise (the difference between the two \
-             measurements of the control, and at least 2 %), or if the 95 % interval of the ratio contains 1. A backend with \
-             fewer than {FEWEST_OF_A_WINNER} samples is neither the fastest nor tied."
+            "A backend is equal to the fastest if the whole 95 % interval of its ratio lies within 5 % of 1. It is undecided \
+             whether it is slower if the interval contains 1 and is wider, or if the ratio is at most the noise (the \
+             difference between the two measurements of the control, and at least 2 %). A backend with fewer than \
+             {FEWEST_OF_A_WINNER} samples is not ranked."
         ));
     }
     let controls = results.studies().filter_map(|study| study.control.as_ref());

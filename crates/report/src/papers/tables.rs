@@ -37,7 +37,7 @@ pub(super) struct Cell {
     pub(super) interval: Option<[String; 2]>,
     /// Whether the ratio is a lower bound.
     pub(super) bound: bool,
-    /// Whether the backend is the fastest or tied with the fastest.
+    /// Whether the backend is the fastest, or shares the first place.
     pub(super) best: bool,
 }
 
@@ -66,7 +66,7 @@ impl Cell {
 
 /// What all captions state.
 const READING: &str = "Times relative to the fastest backend of the row, with 95 % intervals in brackets. Bold: the fastest \
-                       backend, and backends that are tied with it. ≥: lower bound, because a run would exceed the budget. \
+                       backend, and backends that are equal to it or undecided. ≥: lower bound, because a run would exceed the budget. \
                        –: not measured.";
 
 /// What the caption of a table of means states.

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
+use crate::launches::LaunchRows;
+use crate::merge::MergeError;
 use crate::numbers::{counted, list, shown_ratio};
 use crate::operation::Purpose;
 use crate::pool::{Overall, overall};
@@ -135,6 +137,30 @@ impl Report {
             .filter(|row| self.is_external(&row.backend))
     }
 
+    /// Returns the rows as those of one or more launches.
+    pub fn launch_rows(&self) -> LaunchRows<'_> {
+        LaunchRows {
+            results: &self.results,
+            refusals: &self.refusals,
+            samples: &self.samples,
+            control: self.control.as_ref(),
+        }
+    }
+
+    /// Returns an error if `other` did not repeat this study: it is of another mesh, or was measured with
+    /// other settings. The seed and the budget may differ.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`MergeError::OtherMesh`] or [`MergeError::OtherSettings`].
+    pub fn check_repeats(&self, other: &Self) -> Result<(), MergeError> {
+        if self.mesh.sha256 != other.mesh.sha256 {
+            let mesh = other.mesh.name.clone();
+            return Err(MergeError::OtherMesh { mesh });
+        }
+        self.run.check_repeats(&other.run)
+    }
+
     fn all_rows(&self) -> Rows<'_> {
         Rows {
             run: &self.run,
@@ -205,19 +231,22 @@ fn how_sure(report: &Report) -> Option<String> {
     let compared: Vec<&[ResultRow]> = rows
         .filter(|rows| rows.iter().filter(|row| row.median_ns.is_some()).count() > 1)
         .collect();
-    let count = |standing| {
-        let has = |rows: &&&[ResultRow]| rows.iter().any(|row| row.standing == Some(standing));
-        compared.iter().filter(has).count()
+    let decision = |rows: &&[ResultRow]| {
+        let has = |standing| rows.iter().any(|row| row.standing == Some(standing));
+        let order = [Standing::Best, Standing::Undecided, Standing::Equal];
+        order.into_iter().position(has).unwrap_or(order.len())
     };
-    let (clear, tied) = (count(Standing::Best), count(Standing::Tied));
-    let few = compared.len() - clear - tied;
+    let mut counts = [0; 4];
+    compared.iter().for_each(|rows| counts[decision(rows)] += 1);
+    let [clear, undecided, equal, few] = counts;
     let counts = [
-        (clear, "a clear winner"),
-        (tied, "no clear difference between the fastest"),
-        (few, "too few samples"),
+        (clear, "with a clear winner"),
+        (equal, "with equal winners"),
+        (undecided, "undecided"),
+        (few, "with too few samples"),
     ];
     let counts = counts.into_iter().filter(|(count, _)| *count > 0);
-    let counts = counts.map(|(count, what)| format!("{count} with {what}"));
+    let counts = counts.map(|(count, what)| format!("{count} {what}"));
     let counts = list(counts);
     let noise = report.control.as_ref().and_then(describe_noise);
     match (compared.len(), noise) {

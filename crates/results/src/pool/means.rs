@@ -126,7 +126,7 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
                 operation: operation.clone(),
                 meshes: meshes.len(),
                 best: standing(&[Standing::Best, Standing::Alone]),
-                tied: standing(&[Standing::Tied]),
+                tied: standing(&[Standing::Equal, Standing::Undecided]),
                 estimated,
                 ratio_to_best,
                 ci_low: interval.map(|[low, _]| low),

@@ -57,6 +57,18 @@ impl FromStr for Shard {
     }
 }
 
+/// Returns the path of the mesh called `name` in `places`; `None` for the built-in mesh.
+///
+/// # Errors
+///
+/// Returns an error if there is no such mesh.
+pub(crate) fn find_mesh(places: &[PathBuf], name: &str) -> Result<Option<PathBuf>, Failure> {
+    let meshes = find_meshes(places, &mut |_| ())?;
+    let found = meshes.into_iter().find(|mesh| mesh.name == name);
+    let found = found.ok_or_else(|| Failure::usage(format!("{name}: no longer found")))?;
+    Ok(found.path)
+}
+
 /// Returns the meshes in `places`: files, and all meshes in folders and their subfolders, sorted
 /// by name. Each file occurs once. Without any place, returns the built-in mesh. Calls `note` with a
 /// message on the other files in folders.

@@ -104,7 +104,7 @@ fn header(title: &str, columns: &[&str]) -> Vec<Cell> {
 }
 
 const LEGEND: [&str; 4] = [
-    "* fastest or tied with the fastest on most meshes",
+    "* fastest, or shares the first place, on most meshes",
     "≥ lower bound, not ranked: on some meshes, a run would exceed the budget",
     "(n) mean over n meshes only: on the other meshes, a backend has no time",
     "– no time on these meshes",

@@ -47,6 +47,7 @@ fn control(operation: &str, [ratio, low, high]: [f64; 3]) -> ControlRow {
         ratio,
         ci_low: Some(low),
         ci_high: Some(high),
+        launches: Vec::new(),
     }
 }
 
@@ -58,9 +59,9 @@ fn report() -> Report {
     let mut unrun = row("polygon-soup", "ff_bfs", 0.0, Standing::Slower);
     (unrun.median_ns, unrun.ns_per_element, unrun.standing) = (None, None, None);
     unrun.estimated_ns = Some(7.3e9);
-    let mut fresh = row("half-edge", "build", 1240.0, Standing::Tied);
+    let mut fresh = row("half-edge", "build", 1240.0, Standing::Undecided);
     (fresh.first_ns, fresh.first_samples) = (Some(3120.0), 5);
-    let mut merged = row("polygon-soup", "build", 1234.0, Standing::Tied);
+    let mut merged = row("polygon-soup", "build", 1234.0, Standing::Undecided);
     merged.agreement = Agreement::Merged;
     let mut left_out = row("polygon-soup", "loop_gather", 0.0, Standing::Slower);
     (

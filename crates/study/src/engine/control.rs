@@ -27,16 +27,9 @@ pub(crate) fn control(
                 ratio: ratio.value,
                 ci_low: ratio.interval.map(|[low, _]| low),
                 ci_high: ratio.interval.map(|[_, high]| high),
+                launches: Vec::new(),
             });
         }
     }
-    let differences = || operations.iter().map(ControlRow::difference);
-    let typical = Median::from_samples(differences())?.value;
-    let worst = differences().fold(1.0, f64::max);
-    Some(Control {
-        backend: backend.to_owned(),
-        operations,
-        typical,
-        worst,
-    })
+    Control::new(backend, operations)
 }

@@ -121,6 +121,7 @@ impl Entry {
             backend: backend.to_owned(),
             operation: self.name.to_owned(),
             control,
+            launches: Vec::new(),
             rounds: self.samples.iter().map(|(round, _)| *round).collect(),
             cpu_ns: times().map(|time| time.cpu_ns).collect(),
             wall_ns: times().map(|time| time.wall_ns).collect(),
@@ -255,6 +256,19 @@ pub struct Progress<'a> {
     pub task: &'a str,
     /// The name of the backend that is measured now.
     pub backend: &'a str,
+}
+
+impl Progress<'_> {
+    /// Returns the current step as text.
+    pub fn step(&self) -> String {
+        let Self {
+            stage,
+            task,
+            backend,
+            ..
+        } = self;
+        format!("{stage} {task} on {backend}")
+    }
 }
 
 /// A trial that is measured now, on its bench.

@@ -13,7 +13,7 @@ pub(crate) struct Group<'g> {
     /// The corrected time of each entry.
     pub(crate) times: &'g [Option<f64>],
     pub(crate) agreements: &'g [Agreement],
-    /// Ratios up to this value are ties.
+    /// Ratios up to this value are not differences.
     pub(crate) noise: f64,
     /// The number of elements of a whole run, if no run was measured.
     pub(crate) expected: Option<u64>,
@@ -80,6 +80,7 @@ impl Group<'_> {
                 ratio_to_best: rank.map(|rank| rank.ratio.value),
                 ratio_ci_low: ratio.map(|[low, _]| low),
                 ratio_ci_high: ratio.map(|[_, high]| high),
+                launch_ns: Vec::new(),
                 samples: samples.len(),
                 runs_per_sample: entry.runs,
                 warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),

@@ -317,6 +317,7 @@ mod tests {
                 ratio: 1.2,
                 ci_low: None,
                 ci_high: None,
+                launches: Vec::new(),
             }],
             typical: 1.2,
             worst: 1.2,

@@ -288,14 +288,10 @@ pub(crate) fn study_on(
     let measured = bench.measure(trial, progress);
     let results = measured.rows();
     let timer = bench.timer(measured.shortest_ns());
-    let scanning = |backend: &str, relation: Relation| {
-        let costs = chosen.iter().find(|b| b.name() == backend);
-        costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
-    };
     let mut report = Report {
         run: bench.run(),
         mesh: study_mesh.report(),
-        notes: sentences::notes(&backends, &results),
+        notes: Vec::new(),
         backends,
         results,
         refusals: measured.refusals(),
@@ -306,19 +302,27 @@ pub(crate) fn study_on(
         interrupted: measured.interrupted,
         timer: Some(timer),
     };
-    report.sentences = sentences::answer(&report, &scanning);
-    report.warnings = sentences::mismatches(&report);
+    conclude(&mut report, &chosen);
+    Ok(report)
+}
+
+/// Writes the sentences, notes and warnings of a report. `backends` are the structures of which the costs of
+/// queries are known.
+pub(crate) fn conclude(report: &mut Report, backends: &[Backend]) {
+    let scanning = |backend: &str, relation: Relation| {
+        let costs = backends.iter().find(|b| b.name() == backend);
+        costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
+    };
+    report.notes = sentences::notes(&report.backends, &report.results);
+    report.sentences = sentences::answer(report, &scanning);
+    report.warnings = sentences::mismatches(report);
     let rows: Vec<&ResultRow> = report.results.iter().collect();
     let samples: Vec<&Samples> = report.samples.iter().collect();
-    let measured = warnings(
-        &report.run,
-        &timer,
-        &rows,
-        &samples,
-        report.control.as_ref(),
-    );
-    report.warnings.extend(measured);
-    Ok(report)
+    let measured = report.timer.map(|timer| {
+        let control = report.control.as_ref();
+        warnings(&report.run, &timer, &rows, &samples, control)
+    });
+    report.warnings.extend(measured.into_iter().flatten());
 }
 
 /// Estimates the peak memory of the measurement in bytes. The sum includes the structures with

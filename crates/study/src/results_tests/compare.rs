@@ -44,6 +44,7 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
             backend: row.backend.clone(),
             operation: row.operation.clone(),
             control: false,
+            launches: Vec::new(),
             rounds: (0..9).collect(),
             cpu_ns: Some(known.clone()),
             wall_ns: known,

@@ -57,6 +57,7 @@ fn with_samples(mut report: Report) -> Report {
         backend: backend.into(),
         operation: "boundary".into(),
         control,
+        launches: Vec::new(),
         rounds: vec![0, 1, 2],
         cpu_ns: Some(vec![10.0, 20.0, 30.0]),
         wall_ns: vec![11.0, 21.0, 31.0],

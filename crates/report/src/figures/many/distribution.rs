@@ -245,7 +245,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
         "mean",
         "compared with",
         "fastest on",
-        "tied on",
+        "shared on",
         "of decided",
         "least",
         "most",

@@ -128,7 +128,7 @@ pub(super) fn winners(groups: &[Means]) -> Option<TitledTable> {
     })
 }
 
-/// Describes the fastest of one group: `half-edge (7 of 9, tied on 1); next 1.39 ×`.
+/// Describes the fastest of one group: `half-edge (7 of 9, shared on 1); next 1.39 ×`.
 fn winner(rows: &[Overall], meshes: usize) -> String {
     let best = leaders(rows);
     let Some(first) = best.first() else {

@@ -128,8 +128,8 @@ fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
 enum Leader<'s> {
     /// One backend is fastest.
     Best(&'s str),
-    /// Several backends are equally fast.
-    Tie,
+    /// Several backends share the first place.
+    Several,
     /// Only these backends have times, but other backends have times at other sizes.
     Only(Vec<&'s str>),
     /// No backend has a time.
@@ -140,7 +140,7 @@ impl Leader<'_> {
     fn describe(&self) -> String {
         match self {
             Self::Best(name) => format!("{name} is fastest"),
-            Self::Tie => "a tie for the fastest".into(),
+            Self::Several => "no sole winner".into(),
             Self::Only(names) if names.len() == 1 => format!("only {} has times", names[0]),
             Self::Only(names) => format!("only {} have times", list(names)),
             Self::NotMeasured => "no times".into(),
@@ -178,7 +178,7 @@ fn fastest(sizes: &[SizeReport]) -> Vec<String> {
                 _ if names.is_empty() => Leader::NotMeasured,
                 _ if names.len() < all.len() || all.len() == 1 => Leader::Only(names),
                 Some(best) => Leader::Best(&best.backend),
-                None => Leader::Tie,
+                None => Leader::Several,
             }
         };
         let leaders: Vec<(usize, Leader<'_>)> = sizes
@@ -261,7 +261,7 @@ mod tests {
             standing: Some(match (i, best) {
                 (0, true) => Standing::Best,
                 (_, true) => Standing::Slower,
-                (_, false) => Standing::Tied,
+                (_, false) => Standing::Undecided,
             }),
             ..ResultRow::new(
                 backend,
@@ -295,7 +295,7 @@ mod tests {
             fastest(&sizes),
             [
                 "boundary: half-edge is fastest from 100 to 1,000 faces; only indexed-face-set has \
-                 times at 3,380 faces; a tie for the fastest at 10,000 faces; no times at 317,520 \
+                 times at 3,380 faces; no sole winner at 10,000 faces; no times at 317,520 \
                  faces."
             ]
         );

@@ -2,7 +2,7 @@
 
 use super::SpatialTask;
 use sixfold_results::numbers::{grouped, list, rounded};
-use sixfold_results::{Cheapest, NeighboursReport, Standing};
+use sixfold_results::{Cheapest, NeighboursReport};
 
 /// Returns the fastest indices of all tasks, then for each kind of query the index with the least
 /// total time, and the noise.
@@ -29,9 +29,7 @@ pub(super) fn sentences(report: &NeighboursReport) -> Vec<String> {
 fn fastest(report: &NeighboursReport) -> Option<String> {
     let mut winners: Vec<(String, Vec<SpatialTask>)> = Vec::new();
     for task in SpatialTask::ALL {
-        let best = report
-            .rows(task.name())
-            .filter(|row| matches!(row.standing, Some(Standing::Best | Standing::Tied)));
+        let best = report.rows(task.name()).filter(|row| row.is_fastest());
         let names: Vec<&str> = best.map(|row| row.backend.as_str()).collect();
         let names = names.join(" or ");
         match winners.iter_mut().find(|(known, _)| *known == names) {

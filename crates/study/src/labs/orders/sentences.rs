@@ -107,14 +107,15 @@ fn given_order(pairs: &[Pair<'_>]) -> Option<String> {
 /// Counts for each order how often it is the best order, or has no clear difference to the best.
 fn best_orders(pairs: &[Pair<'_>], undecided: usize) -> Option<String> {
     let mut counts = Order::ALL.map(|order| {
-        let with = |wanted: Standing| {
-            let has = |row: &ResultRow| row.case == order.name() && row.standing == Some(wanted);
+        let with = |wanted: &dyn Fn(&ResultRow) -> bool| {
+            let has = |row: &ResultRow| row.case == order.name() && wanted(row);
             pairs.iter().filter(|pair| pair.iter().any(has)).count()
         };
-        (order, with(Standing::Best), with(Standing::Tied))
+        let only = |row: &ResultRow| row.standing == Some(Standing::Best);
+        (order, with(&only), with(&ResultRow::shares_first))
     });
-    counts.sort_by_key(|&(_, best, tied)| Reverse((best + tied, best)));
-    let counts = counts.map(|(order, best, tied)| format!("{order} {best} and {tied}"));
+    counts.sort_by_key(|&(_, only, shared)| Reverse((only + shared, only)));
+    let counts = counts.map(|(order, only, shared)| format!("{order} {only} and {shared}"));
     let few = match undecided {
         0 => String::new(),
         1 => " One more pair has too few samples.".into(),

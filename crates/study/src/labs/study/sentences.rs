@@ -219,8 +219,8 @@ mod tests {
             ..row("polygon-soup", Boundary, 1.0, Standing::Slower)
         };
         let mut report = report(vec![
-            row("polygon-soup", Build, 1.0, Standing::Tied),
-            row("half-edge", Build, 1.04, Standing::Tied),
+            row("polygon-soup", Build, 1.0, Standing::Undecided),
+            row("half-edge", Build, 1.04, Standing::Undecided),
             row("corner-table", Build, 2.08, Standing::Slower),
             row("polygon-soup", query, 400.0, Standing::Slower),
             row("half-edge", query, 1.0, Standing::Best),
@@ -235,8 +235,7 @@ mod tests {
         let how_much = "Next best: corner-table takes 2.08 × the time in building, corner-table takes \
                         2.00 × the time in queries; polygon-soup scans all 4 faces for most relations and \
                         takes ≥ 600 × the time in queries.";
-        let counts = "How sure: of 3 operations, 2 with a clear winner and 1 with no clear \
-                      difference between the fastest";
+        let counts = "How sure: of 3 operations, 2 with a clear winner and 1 undecided";
         assert_eq!(said(&report), [which, how_much, &format!("{counts}.")]);
 
         let control = |ratio| ControlRow {
@@ -244,6 +243,7 @@ mod tests {
             ratio,
             ci_low: None,
             ci_high: None,
+            launches: Vec::new(),
         };
         report.control = Some(Control {
             backend: "half-edge".into(),
@@ -278,7 +278,7 @@ mod tests {
         let timed = |backend: &str, operation, ratio: f64, spread: f64| ResultRow {
             ratio_ci_low: Some(ratio / spread),
             ratio_ci_high: Some(ratio * spread),
-            ..row(backend, operation, ratio, Standing::Tied)
+            ..row(backend, operation, ratio, Standing::Undecided)
         };
         let loops = Operation::Loop(Scatter);
         let with_spread = |spread| {
@@ -339,12 +339,17 @@ mod tests {
         let timed = |backend: &str, method, ratio, spread: f64| ResultRow {
             ci_low_ns: Some(100.0 * ratio / spread),
             ci_high_ns: Some(100.0 * ratio * spread),
-            ..row(backend, Operation::Loop(method), ratio, Standing::Tied)
+            ..row(backend, Operation::Loop(method), ratio, Standing::Undecided)
         };
         let searching = ResultRow {
             median_ns: None,
             estimated_ns: Some(9000.0),
-            ..row("polygon-soup", Operation::Loop(Gather), 1.0, Standing::Tied)
+            ..row(
+                "polygon-soup",
+                Operation::Loop(Gather),
+                1.0,
+                Standing::Undecided,
+            )
         };
         let report = report(vec![
             searching,

@@ -248,10 +248,10 @@ fn scans_are_slower_and_their_samples_are_small() {
             "{row:?}"
         );
     }
-    let tied = report.rows(Operation::FaceBarycenter.name());
-    for row in tied {
+    let equal = report.rows(Operation::FaceBarycenter.name());
+    for row in equal {
         assert!(!row.sampled);
-        assert_eq!(row.standing, Some(Standing::Tied), "{row:?}");
+        assert_eq!(row.standing, Some(Standing::Equal), "{row:?}");
         assert!(is_close(row.ratio_to_best.expect("ranked"), 1.0), "{row:?}");
     }
     let sentences = report.sentences.join(" ");

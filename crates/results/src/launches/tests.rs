@@ -1,0 +1,178 @@
+//! Tests of the intervals over launches, on hand-made times and on simulated studies with known truth.
+
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+
+use super::*;
+use crate::corrected::corrected_times;
+use crate::simulated::{LAUNCHING, normal, uniform};
+use crate::time::Time;
+
+/// Number of simulated studies.
+const STUDIES: usize = 1000;
+/// True time of the first backend, and that of the second divided by it.
+const TRUE_NS: f64 = 100.0;
+const TRUE_RATIO: f64 = 1.1;
+
+fn close(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() < 1e-9
+}
+
+#[test]
+fn a_time_is_the_geometric_mean_over_the_launches() {
+    let launches = [Some(1.0), Some(4.0), Some(16.0)];
+    assert!(matches!(times_over_launches(&[&launches])[..], [Some(ns)] if close(ns, 4.0)));
+    let time = time_over_launches(4.0, &launches).expect("launches");
+    let [low, high] = time.interval.expect("three launches");
+    // The standard error of the logarithms is ln 4 / √3, and the quantile of two degrees of freedom is 4.303.
+    let half = 4.302_653 * 4_f64.ln() / 3_f64.sqrt();
+    assert!((high / (4.0 * half.exp()) - 1.0).abs() < 1e-3, "{high}");
+    assert!(close(low * high, 16.0) && time.least == 1.0);
+}
+
+#[test]
+fn a_backend_gains_nothing_by_its_absence_from_a_slow_launch() {
+    let first = [Some(10.0), Some(20.0), Some(40.0)];
+    let second = [Some(30.0), Some(60.0), None];
+    let times = times_over_launches(&[&first, &second, &[None; 3]]);
+    let [Some(a), Some(b), None] = times[..] else {
+        panic!("{times:?}")
+    };
+    assert!(close(a, 20.0) && close(b, 60.0), "{times:?}");
+    let ratio = ratio_over_launches([b, a], [&second, &first]).expect("two common launches");
+    assert!(close(ratio.value, 3.0));
+    let [low, high] = ratio.interval.expect("two common launches");
+    assert!(
+        close(low, 3.0) && close(high, 3.0),
+        "no variation of the ratio"
+    );
+}
+
+#[test]
+fn a_single_launch_has_no_interval() {
+    let one = [Some(5.0)];
+    assert_eq!(
+        time_over_launches(5.0, &one).expect("a time").interval,
+        None
+    );
+    let ratio = ratio_over_launches([5.0, 4.0], [&one, &[Some(4.0)]]).expect("a ratio");
+    assert_eq!((ratio.value, ratio.interval), (1.25, None));
+    assert_eq!(ratio_over_launches([5.0, 4.0], [&one, &[None]]), None);
+    assert_eq!(time_over_launches(5.0, &[None]), None);
+}
+
+#[test]
+fn without_logarithms_times_are_means() {
+    let times = times_over_launches(&[&[Some(0.0), Some(4.0)], &[Some(3.0), None]]);
+    assert_eq!(times, [Some(2.0), Some(3.0)]);
+    let ratio = ratio_over_launches([2.0, 0.0], [&[Some(2.0)], &[Some(0.0)]]);
+    assert_eq!(ratio, None, "the ratio is not finite");
+    let time = time_over_launches(2.0, &[Some(0.0), Some(4.0)]).expect("a time");
+    assert_eq!(time.interval, None);
+}
+
+#[test]
+fn studies_are_compared_without_pairs() {
+    let before = [1.0, 1.1, 1.21].map(Some);
+    let after = before.map(|ns| ns.map(|ns| 2.0 * ns));
+    let ratio = ratio_of_studies([2.2, 1.1], [&after, &before]).expect("a ratio");
+    assert!(close(ratio.value, 2.0));
+    let [low, high] = ratio.interval.expect("three launches");
+    // Both have the error ln 1.1 / √3, and Welch gives four degrees of freedom.
+    let half = (2.776_445 * 1.1_f64.ln() * (2.0_f64 / 3.0).sqrt()).hypot(NORMAL * 0.01 * SQRT_2);
+    assert!((high / (2.0 * half.exp()) - 1.0).abs() < 1e-4, "{high}");
+    assert!(close(low * high, 4.0));
+    let one = ratio_of_studies([2.2, 1.1], [&after, &before[..1]]).expect("a ratio");
+    assert_eq!(one.interval, None);
+}
+
+/// Probability and factor of a stall: all of a launch is slow.
+const STALL: (f64, f64) = (0.1, 1.5);
+
+/// One study of two backends: for each launch, the corrected times.
+fn study(launches: usize, stalls: bool, random: &mut ChaCha8Rng) -> [Vec<Option<f64>>; 2] {
+    let mut values = [const { Vec::new() }; 2];
+    for _ in 0..launches {
+        let stall = if stalls && uniform(random) < STALL.0 {
+            STALL.1
+        } else {
+            1.0
+        };
+        let common = LAUNCHING.common(random);
+        let samples = [TRUE_NS, TRUE_NS * TRUE_RATIO].map(|true_ns| {
+            // Addresses and pages differ from launch to launch, for each backend.
+            let own = stall * normal(random, LAUNCHING.launches).exp();
+            let times = LAUNCHING.times(&common, true_ns * own, random);
+            (0..)
+                .zip(times.into_iter().map(Time::from_wall_ns))
+                .collect()
+        });
+        for (values, ns) in values.iter_mut().zip(corrected_times(&samples)) {
+            values.push(ns);
+        }
+    }
+    values
+}
+
+/// Returns the part of 1,000 studies, in percent, whose intervals of the ratio and of the time contain the truth.
+fn covered(launches: usize, stalls: bool) -> [f64; 2] {
+    let mut random = ChaCha8Rng::seed_from_u64(67);
+    let mut covered = [0; 2];
+    for _ in 0..STUDIES {
+        let [a, b] = &study(launches, stalls, &mut random);
+        let [Some(ns), Some(other)] = times_over_launches(&[a, b])[..] else {
+            panic!("two times")
+        };
+        let ratio = ratio_over_launches([other, ns], [b, a]).expect("a ratio");
+        let time = time_over_launches(ns, a).expect("a time");
+        let contains = |found: Median, truth: f64| {
+            let [low, high] = found.interval.expect("two launches or more");
+            usize::from((low..=high).contains(&truth))
+        };
+        covered[0] += contains(ratio, TRUE_RATIO);
+        covered[1] += contains(time, TRUE_NS);
+    }
+    covered.map(|count| 100.0 * count as f64 / STUDIES as f64)
+}
+
+/// Few launches and many, on a machine that differs from launch to launch and from round to round, drifts, jumps,
+/// stutters and stalls.
+#[test]
+fn intervals_of_ratios_contain_the_truth_in_95_percent_of_the_studies() {
+    for launches in [2, 3, 5, 10] {
+        let [ratios, _] = covered(launches, true);
+        assert!(
+            (93.0..=97.0).contains(&ratios),
+            "{launches} launches: {ratios} %"
+        );
+    }
+}
+
+#[test]
+fn intervals_of_times_contain_the_truth_and_have_room_for_the_drift_that_no_launch_sees() {
+    for launches in [2, 3, 5, 10] {
+        let [_, times] = covered(launches, false);
+        assert!(times >= 93.0, "{launches} launches: {times} %");
+    }
+}
+
+/// The samples of one launch do not show what differs from launch to launch. If this test fails, the simulated
+/// machine is too steady to test anything.
+#[test]
+fn the_interval_of_one_launch_is_too_narrow() {
+    let mut random = ChaCha8Rng::seed_from_u64(68);
+    let mut covered = 0;
+    for _ in 0..STUDIES {
+        let common = LAUNCHING.common(&mut random);
+        let samples = [TRUE_NS, TRUE_NS * TRUE_RATIO].map(|true_ns| {
+            let own = normal(&mut random, LAUNCHING.launches).exp();
+            let times = LAUNCHING.times(&common, true_ns * own, &mut random);
+            times.into_iter()
+        });
+        let [a, b] = samples;
+        let ratio = Median::from_ratios(b.zip(a).map(|(b, a)| b / a)).expect("samples");
+        let [low, high] = ratio.interval.expect("enough samples");
+        covered += usize::from((low..=high).contains(&TRUE_RATIO));
+    }
+    assert!(covered < STUDIES * 9 / 10, "{covered} of {STUDIES}");
+}

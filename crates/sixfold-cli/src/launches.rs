@@ -1,0 +1,344 @@
+//! Several launches of a command: fresh processes that measure the same.
+//!
+//! The first process reads the mesh, prints what is known before the measurement, starts one launch after the
+//! other, and pools their documents. A launch is a process of the same program with the same arguments. The
+//! environment tells it which launch it is and how much time it has. It prints nothing but its document, and
+//! its progress to standard error as lines.
+
+use std::env;
+use std::io::{self, BufRead, BufReader, Read};
+use std::num::NonZeroU32;
+use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::Arc;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use sixfold_results::Results;
+use sixfold_results::numbers::counted;
+use sixfold_study::{Effort, pool_launches};
+
+use crate::failure::Failure;
+use crate::progress::{INTERRUPTED, LINES, PROGRESS, PROGRESS_MARK};
+use crate::text::{print_notice, sanitize};
+
+/// The environment variable that makes a process a launch.
+const LAUNCH: &str = "SIXFOLD_LAUNCH";
+/// The first process looks this often whether it is interrupted.
+const PATIENCE: Duration = Duration::from_millis(200);
+/// Time of a launch on a small mesh by default. Fewer, longer launches would have wider intervals, and in shorter
+/// launches too much of the time is for building and planning.
+const USUAL_S: f64 = 4.0;
+/// Minimum time of a launch on a small mesh.
+const SHORTEST_S: f64 = 0.5;
+/// Maximum number of launches by default. More launches hardly narrow the intervals.
+const MOST_BY_DEFAULT: u32 = 20;
+/// Minimum number of launches by default, if there are several. With two, intervals are three times as wide.
+const FEWEST_BY_DEFAULT: u32 = 3;
+/// Approximate time for reading, checking and building a mesh on all structures, for each face.
+const SET_UP_S_PER_FACE: f64 = 4e-6;
+
+/// The start of this process.
+static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+
+/// Notes the start of the process, for the budget.
+pub(crate) fn note_start() {
+    LazyLock::force(&START);
+}
+
+/// What a process is told that is one of several launches.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Launch {
+    /// The number of the launch, from 0.
+    number: u32,
+    /// The time of the whole process in seconds; `None` if the number of rounds is fixed.
+    budget_s: Option<f64>,
+    /// The name of the mesh to measure, if the command has several.
+    pub(crate) mesh: Option<String>,
+}
+
+impl Launch {
+    /// Returns the launch that this process is; `None` if the user started it.
+    pub(crate) fn current() -> Option<&'static Self> {
+        static CURRENT: LazyLock<Option<Launch>> = LazyLock::new(|| {
+            let text = env::var(LAUNCH).ok()?;
+            serde_json::from_str(&text).ok()
+        });
+        CURRENT.as_ref()
+    }
+
+    /// Returns how much this launch measures, if a whole command measures `effort`.
+    pub(crate) fn effort(&self, effort: Effort) -> Effort {
+        match self.budget_s {
+            Some(budget_s) => {
+                let budget = Duration::try_from_secs_f64(budget_s).unwrap_or_default();
+                Effort::Budget(budget.saturating_sub(START.elapsed()))
+            }
+            None => effort,
+        }
+    }
+
+    /// Returns the seed of this launch, if that of the command is `seed`: each launch has its own order of entries
+    /// and its own samples of elements.
+    pub(crate) fn seed(&self, seed: u64) -> u64 {
+        seed.wrapping_add(u64::from(self.number))
+    }
+
+    /// Sets `stop` when the first process ends or asks for the end, by closing the standard input of this one.
+    pub(crate) fn stop_with_parent(&self, stop: &Arc<AtomicBool>) {
+        let stop = Arc::clone(stop);
+        thread::spawn(move || {
+            let _ = io::copy(&mut io::stdin(), &mut io::sink());
+            stop.store(true, Ordering::Relaxed);
+        });
+    }
+}
+
+/// Returns the number of launches of a command that measures `effort` on `faces` faces: `wanted`, or else as many
+/// as the budget holds.
+///
+/// # Errors
+///
+/// Returns an error if the budget does not hold `wanted` launches.
+pub(crate) fn count(
+    wanted: Option<NonZeroU32>,
+    effort: Effort,
+    faces: usize,
+) -> Result<u32, Failure> {
+    if Launch::current().is_some() {
+        return Ok(1);
+    }
+    let Some(budget) = effort.budget() else {
+        return Ok(wanted.map_or(1, NonZeroU32::get));
+    };
+    let budget_s = budget.as_secs_f64();
+    let set_up_s = SET_UP_S_PER_FACE * faces as f64;
+    let fit = |each_s: f64| (budget_s / each_s) as u32;
+    let usual = fit(USUAL_S.max(4.0 * set_up_s)).min(MOST_BY_DEFAULT);
+    let Some(wanted) = wanted.map(NonZeroU32::get) else {
+        let fewest = FEWEST_BY_DEFAULT;
+        let has_room = fit((USUAL_S / 2.0).max(2.0 * set_up_s)) >= fewest;
+        return Ok(if has_room { usual.max(fewest) } else { 1 });
+    };
+    let most = fit(SHORTEST_S.max(2.0 * set_up_s)).max(1);
+    if wanted > most {
+        return Err(Failure::usage(format!(
+            "--launches {wanted} is too many: a budget of {budget_s} s holds at most {} on this mesh; use fewer, or \
+             a longer --budget",
+            counted(most as usize, "launch", "launches")
+        )));
+    }
+    Ok(wanted)
+}
+
+/// Runs `count` launches of this command one after the other within `effort`, and pools their documents. If the
+/// command has several meshes, each launch measures the one called `mesh`. A launch that dies is left out with a
+/// notice, see [`has_died`]. If the flag `stop` is set, the launch that runs ends early.
+///
+/// # Errors
+///
+/// Returns the failure of the first launch if it refuses to measure, or if no launch has a document.
+pub(crate) fn run(
+    count: u32,
+    effort: Effort,
+    mesh: Option<&str>,
+    stop: &AtomicBool,
+    show: &dyn Fn(f64, &str),
+) -> Result<Results, Failure> {
+    let start = match mesh {
+        None => *START,
+        Some(_) => Instant::now(),
+    };
+    let mut documents: Vec<Results> = Vec::new();
+    let mut first_death = None;
+    for number in 0..count {
+        if stop.load(Ordering::Relaxed) {
+            break;
+        }
+        let budget_s = effort.budget().map(|budget| {
+            let left = budget.saturating_sub(start.elapsed());
+            left.as_secs_f64() / f64::from(count - number)
+        });
+        let launch = Launch {
+            number,
+            budget_s,
+            mesh: mesh.map(str::to_owned),
+        };
+        let position = format!("launch {} of {count}", number + 1);
+        let show = |line: &str| {
+            let step = line.split_once(" % ");
+            let step = step.and_then(|(percent, what)| Some((percent.parse::<f64>().ok()?, what)));
+            if let Some((percent, what)) = step {
+                let done = (f64::from(number) + percent / 100.0) / f64::from(count);
+                show(done, &format!("{position}: {what}"));
+            }
+        };
+        match run_one(&launch, stop, &show) {
+            Ok(document) => documents.push(document),
+            // What one launch refuses, all refuse.
+            Err(failure) if failure.code != DIED => return Err(failure),
+            Err(failure) => {
+                print_notice(&format!(
+                    "note: {position} is left out: {}",
+                    failure.message
+                ));
+                HAS_DIED.store(true, Ordering::Relaxed);
+                first_death.get_or_insert(failure);
+            }
+        }
+    }
+    match first_death.filter(|_| documents.is_empty()) {
+        Some(first) => Err(Failure::usage(format!(
+            "no launch has a result: {}",
+            first.message
+        ))),
+        None => pool_launches(documents).map_err(Failure::usage),
+    }
+}
+
+/// Whether a launch died.
+static HAS_DIED: AtomicBool = AtomicBool::new(false);
+/// The exit code that stands for a launch that died. No command has it.
+const DIED: u8 = u8::MAX;
+
+/// Returns whether a launch of this command died, so that the result lacks it.
+pub(crate) fn has_died() -> bool {
+    HAS_DIED.load(Ordering::Relaxed)
+}
+
+/// Runs one launch, and returns its document.
+fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Results, Failure> {
+    let died = |message: String| Failure {
+        code: DIED,
+        message,
+    };
+    let cannot_start = |cause: io::Error| died(format!("cannot start: {cause}"));
+    let task = serde_json::to_string(launch).expect("numbers are JSON");
+    let mut child = Command::new(env::current_exe().map_err(cannot_start)?)
+        .args(env::args_os().skip(1))
+        .env(LAUNCH, task)
+        .env(PROGRESS, LINES)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(cannot_start)?;
+    let output = child.stdout.take().expect("piped");
+    let output = thread::spawn(|| read_all(output));
+    let lines = lines(&mut child);
+    let mut said = Vec::new();
+    loop {
+        if stop.load(Ordering::Relaxed) {
+            drop(child.stdin.take());
+        }
+        match lines.recv_timeout(PATIENCE) {
+            Ok(line) => match line.strip_prefix(PROGRESS_MARK) {
+                Some(progress) => show(progress),
+                None => said.push(line),
+            },
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    // Standard input stays open until here: the launch ends early if it is closed.
+    let stdin = child.stdin.take();
+    let status = child.wait().map_err(cannot_start)?;
+    drop(stdin);
+    let text = output.join().unwrap_or_default();
+    document(status, &text, &said)
+}
+
+/// Returns the document of a launch that has ended.
+fn document(status: ExitStatus, text: &str, said: &[String]) -> Result<Results, Failure> {
+    let error = said.iter().find_map(|line| line.strip_prefix("error: "));
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    match (Results::read_json(text), code) {
+        // Different results and interruptions are in the document.
+        (Ok(results), Some(0 | 1 | INTERRUPTED)) => Ok(results),
+        (_, Some(code)) if error.is_some() => Err(Failure {
+            code,
+            message: error.map(sanitize).unwrap_or_default(),
+        }),
+        (Ok(_), _) => Err(Failure {
+            code: DIED,
+            message: format!("it ended with {status}"),
+        }),
+        (Err(cause), _) => Err(Failure {
+            code: DIED,
+            message: format!("it ended with {status}, and its document {cause}"),
+        }),
+    }
+}
+
+fn read_all(mut output: ChildStdout) -> String {
+    let mut bytes = Vec::new();
+    // A launch that dies has an incomplete document, which cannot be parsed.
+    let _ = output.read_to_end(&mut bytes);
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Returns the lines that a launch writes to standard error.
+fn lines(child: &mut Child) -> Receiver<String> {
+    let (sender, receiver) = channel();
+    let errors = child.stderr.take().expect("piped");
+    thread::spawn(move || {
+        let lines = BufReader::new(errors).lines();
+        for line in lines.map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    receiver
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(seconds: f64) -> Effort {
+        Effort::Budget(Duration::from_secs_f64(seconds))
+    }
+
+    fn by_default(budget_s: f64, faces: usize) -> u32 {
+        count(None, seconds(budget_s), faces).expect("no number was given")
+    }
+
+    #[test]
+    fn the_budget_and_the_mesh_choose_the_number_of_launches() {
+        assert_eq!(
+            [1.0, 5.9, 6.0, 11.9].map(|s| by_default(s, 1000)),
+            [1, 1, 3, 3]
+        );
+        assert_eq!(
+            [20.0, 60.0, 3600.0].map(|s| by_default(s, 1000)),
+            [5, 15, 20]
+        );
+        // A million faces need 4 s to be read and built, and a launch should take four times that.
+        assert_eq!(
+            [20.0, 24.0, 80.0].map(|s| by_default(s, 1_000_000)),
+            [1, 3, 5]
+        );
+        let rounds = Effort::Rounds(NonZeroU32::new(8).expect("above 0"));
+        assert_eq!(count(None, rounds, 1000).ok(), Some(1));
+    }
+
+    #[test]
+    fn a_budget_holds_a_limited_number_of_launches() {
+        let wanted = |n| count(NonZeroU32::new(n), seconds(2.0), 1000);
+        assert_eq!(wanted(4).ok(), Some(4));
+        let refused = wanted(5).expect_err("too many");
+        assert_eq!(refused.code, 2);
+        let message = refused.message;
+        assert!(
+            message.contains("a budget of 2 s holds at most 4 launches"),
+            "{message}"
+        );
+        let rounds = Effort::Rounds(NonZeroU32::MIN);
+        assert_eq!(count(NonZeroU32::new(500), rounds, 1000).ok(), Some(500));
+    }
+}

@@ -1,0 +1,113 @@
+//! Pools the documents of several launches: fresh processes that measured the same.
+
+use sixfold_results::launches::{LaunchRows, pool_rows};
+use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Results, Timer};
+use sixfold_workload::{Backend, Operation};
+
+use crate::labs::study::conclude;
+
+/// Pools documents of the same work, one for each launch, as one document. Documents that were pooled before
+/// add all of their launches.
+///
+/// Studies of the same mesh become one study, see
+/// [`pool_rows`](sixfold_results::launches::pool_rows()). A mesh that failed in some launches has a study
+/// of the others.
+///
+/// # Errors
+///
+/// Returns an error if studies of one mesh have different settings (their seeds and budgets may differ), or
+/// are of different meshes with the same name.
+pub fn pool_launches(launches: Vec<Results>) -> Result<Results, MergeError> {
+    let mut pooled = Results::default();
+    let mut groups: Vec<Vec<Report>> = Vec::new();
+    let mut others = Vec::new();
+    for launch in launches {
+        pooled.plan(launch.planned);
+        pooled.add_notices(launch.notices);
+        others.push((launch.failures, Vec::new()));
+        for finding in launch.findings {
+            match finding {
+                Finding::Study(study) => {
+                    let same = |group: &&mut Vec<Report>| group[0].mesh.name == study.mesh.name;
+                    match groups.iter_mut().find(same) {
+                        Some(group) => {
+                            group[0].check_repeats(&study)?;
+                            group.push(*study);
+                        }
+                        None => groups.push(vec![*study]),
+                    }
+                }
+                finding => others.last_mut().expect("pushed above").1.push(finding),
+            }
+        }
+    }
+    pooled.extend(groups.into_iter().map(|group| pool_studies(group).into()));
+    for (failures, findings) in others {
+        pooled.add_failures(failures);
+        pooled.extend(findings);
+    }
+    Ok(pooled)
+}
+
+/// Pools the studies of one mesh.
+fn pool_studies(mut launches: Vec<Report>) -> Report {
+    if launches.len() == 1 {
+        return launches.remove(0);
+    }
+    let rows: Vec<LaunchRows<'_>> = launches.iter().map(Report::launch_rows).collect();
+    let mut pooled = pool_rows(&rows, |row| row.operation.clone());
+    let backends = pool_backends(&launches);
+    pooled.results.sort_by_key(|row| place(row, &backends));
+    let first = &launches[0];
+    let mut report = Report {
+        run: first.run.clone(),
+        mesh: first.mesh.clone(),
+        backends,
+        results: pooled.results,
+        refusals: pooled.refusals,
+        samples: pooled.samples,
+        control: pooled.control,
+        interrupted: launches.iter().any(|launch| launch.interrupted),
+        timer: pool_timers(launches.iter().filter_map(|launch| launch.timer)),
+        ..Report::default()
+    };
+    report.run.add_launches(
+        &launches[1..]
+            .iter()
+            .map(|launch| &launch.run)
+            .collect::<Vec<_>>(),
+    );
+    conclude(&mut report, &Backend::structures());
+    report
+}
+
+/// Returns the place of a row in tables.
+fn place(row: &ResultRow, backends: &[BackendReport]) -> (Option<usize>, Option<usize>) {
+    let operation = Operation::ALL
+        .iter()
+        .position(|o| o.name() == row.operation);
+    let backend = backends
+        .iter()
+        .position(|backend| backend.name == row.backend);
+    (operation, backend)
+}
+
+/// Returns the backends of the first launch in which each was built.
+fn pool_backends(launches: &[Report]) -> Vec<BackendReport> {
+    let mut pooled = launches[0].backends.clone();
+    for backend in &mut pooled {
+        let mut others = launches
+            .iter()
+            .filter_map(|launch| launch.backend(&backend.name));
+        if let (None, Some(built)) = (backend.bytes, others.find(|other| other.bytes.is_some())) {
+            *backend = built.clone();
+        }
+    }
+    pooled
+}
+
+/// Returns the clock with the largest error.
+fn pool_timers(timers: impl Iterator<Item = Timer>) -> Option<Timer> {
+    let share = |timer: &Timer| timer.largest_share.unwrap_or(0.0);
+    timers.max_by(|a, b| share(a).total_cmp(&share(b)))
+}
