@@ -165,10 +165,13 @@ measuring = Claims(
         median polish (Tukey 1977)
         the ratio of two structures is the quotient of their times
         fewer than four samples
-        A 95 % interval
+        a budget
+        below 6 s has one
+        its 95 % interval
+        Jones 2013, 2020
+        within 5 % of 1
+        the interval contains 1 and
         (standard deviation 1 %)
-        Two structures are tied
-        contains 1.
         rounded to 32 bits
         one JSON object per line
         refuses to compare two studies

@@ -29,10 +29,13 @@ pub enum MergeError {
     OtherMesh { mesh: String },
     /// The documents have two different studies of the same mesh.
     #[error(
-        "this file and an earlier one both have a study of {mesh}: compare them with \
-         `sixfold compare`, or leave one out"
+        "this file and an earlier one both have a study of {mesh}: pool them with --repeat if they repeat one \
+         measurement, compare them with `sixfold compare`, or leave one out"
     )]
     SecondStudy { mesh: String },
+    /// Two documents have the same samples, which do not count twice.
+    #[error("this file and an earlier one have the same samples of {mesh}: leave one out")]
+    Copy { mesh: String },
 }
 
 impl MergeError {
@@ -86,6 +89,30 @@ impl Results {
         self.extend(new);
         self.add_failures(other.failures);
         self.add_notices(other.notices);
+        Ok(())
+    }
+
+    /// Returns an error if a study of `other` does not repeat the study of the same mesh in `self`: it has other
+    /// settings than the seed and the budget, is of another mesh with the same name, or is a copy.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`MergeError`] in these cases.
+    pub fn check_repeats(&self, other: &Self) -> Result<(), MergeError> {
+        for theirs in other.studies() {
+            let mut ours = self.studies();
+            let Some(ours) = ours.find(|ours| ours.mesh.name == theirs.mesh.name) else {
+                continue;
+            };
+            let mesh = theirs.mesh.name.clone();
+            if ours.mesh.sha256 != theirs.mesh.sha256 {
+                return Err(MergeError::OtherMesh { mesh });
+            }
+            ours.run.check_repeats(&theirs.run)?;
+            if !ours.samples.is_empty() && ours.samples == theirs.samples {
+                return Err(MergeError::Copy { mesh });
+            }
+        }
         Ok(())
     }
 

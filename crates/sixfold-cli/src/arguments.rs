@@ -78,14 +78,16 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study scans --report results              all meshes in a folder; --resume continues
   sixfold study bunny.obj --figures paper           figures as SVG and PDF, tables for LaTeX
 
-Measurement: Each round runs every operation once on every backend, in random order. The clock
-measures the processor time of the thread. The table shows the median over the rounds. In each
-round, one backend is measured twice. The difference between the two times of this backend is the
-noise. A difference between backends that is smaller than the noise is not decided.
+Measurement: A study is several launches: fresh processes that measure one after the other. Each
+round of a launch runs every operation once on every backend, in random order. The clock measures
+the processor time of the thread. A launch gives the median over its rounds, and the table shows the
+mean over the launches. In each round, one backend is measured twice. The difference between the two
+times of this backend is the noise. A difference between backends that is smaller than the noise is
+not decided.
 
 Budget and rounds: With --budget, as many rounds are run as fit into the time. What takes too long is
-sampled, estimated or left out. With --rounds, exactly this number of rounds of everything is run,
-without a time limit. Two machines then do the same work: whether a slow operation runs on a sample
+sampled, estimated or left out. A budget below 6s has one launch. With --rounds, exactly this number
+of rounds of everything is run in each launch (one by default), without a time limit. Two machines then do the same work: whether a slow operation runs on a sample
 of the elements depends on the number of elements, not on measured times.
 
 Seed: The seed determines the random order of the runs, and which elements are in a sample.
@@ -111,6 +113,7 @@ const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 1/2 --report one      part 1, on one machine
   sixfold study scans --shard 2/2 --report two      part 2, on another machine
   sixfold merge one two --report all
+  sixfold merge --repeat a.json b.json --json all.json       further launches of one study
 
 A shard is the result of one part of a study. All studies must have the same settings. A copy of a
 result is used once. Two different studies of one mesh are refused.
@@ -351,6 +354,9 @@ pub(crate) struct Merge {
     /// Files written by --json, or folders written by --report
     #[arg(value_name = "DIR|FILE.json", required = true)]
     pub(crate) results: Vec<PathBuf>,
+    /// Pool studies that repeat one measurement, as further launches
+    #[arg(long)]
+    pub(crate) repeat: bool,
     /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,

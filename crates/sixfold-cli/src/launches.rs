@@ -8,6 +8,7 @@
 use std::env;
 use std::io::{self, BufRead, BufReader, Read};
 use std::num::NonZeroU32;
+use std::path::Path;
 use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::sync::LazyLock;
@@ -22,6 +23,7 @@ use sixfold_results::numbers::counted;
 use sixfold_study::{Effort, pool_launches};
 
 use crate::failure::Failure;
+use crate::mesh_files::shown;
 use crate::progress::{INTERRUPTED, LINES, PROGRESS, PROGRESS_MARK};
 use crate::text::{print_notice, sanitize};
 
@@ -98,19 +100,29 @@ impl Launch {
     }
 }
 
-/// Returns the number of launches of a command that measures `effort` on `faces` faces: `wanted`, or else as many
-/// as the budget holds.
+/// Returns the number of launches of a command that measures `effort` on the mesh `path` with `faces` faces:
+/// `wanted`, or else as many as the budget holds.
 ///
 /// # Errors
 ///
-/// Returns an error if the budget does not hold `wanted` launches.
+/// Returns an error if the budget does not hold `wanted` launches, or if the mesh cannot be read again.
 pub(crate) fn count(
     wanted: Option<NonZeroU32>,
     effort: Effort,
+    path: Option<&Path>,
     faces: usize,
 ) -> Result<u32, Failure> {
     if Launch::current().is_some() {
         return Ok(1);
+    }
+    if let Some(path) = path.filter(|path| !path.is_file()) {
+        return match wanted.map_or(1, NonZeroU32::get) {
+            1 => Ok(1),
+            wanted => Err(Failure::usage(format!(
+                "{}: is not a file, so it cannot be read {wanted} times: save the mesh to a file, or use --launches 1",
+                shown(path)
+            ))),
+        };
     }
     let Some(budget) = effort.budget() else {
         return Ok(wanted.map_or(1, NonZeroU32::get));
@@ -305,7 +317,7 @@ mod tests {
     }
 
     fn by_default(budget_s: f64, faces: usize) -> u32 {
-        count(None, seconds(budget_s), faces).expect("no number was given")
+        count(None, seconds(budget_s), None, faces).expect("no number was given")
     }
 
     #[test]
@@ -324,12 +336,12 @@ mod tests {
             [1, 3, 5]
         );
         let rounds = Effort::Rounds(NonZeroU32::new(8).expect("above 0"));
-        assert_eq!(count(None, rounds, 1000).ok(), Some(1));
+        assert_eq!(count(None, rounds, None, 1000).ok(), Some(1));
     }
 
     #[test]
     fn a_budget_holds_a_limited_number_of_launches() {
-        let wanted = |n| count(NonZeroU32::new(n), seconds(2.0), 1000);
+        let wanted = |n| count(NonZeroU32::new(n), seconds(2.0), None, 1000);
         assert_eq!(wanted(4).ok(), Some(4));
         let refused = wanted(5).expect_err("too many");
         assert_eq!(refused.code, 2);
@@ -339,6 +351,9 @@ mod tests {
             "{message}"
         );
         let rounds = Effort::Rounds(NonZeroU32::MIN);
-        assert_eq!(count(NonZeroU32::new(500), rounds, 1000).ok(), Some(500));
+        assert_eq!(
+            count(NonZeroU32::new(500), rounds, None, 1000).ok(),
+            Some(500)
+        );
     }
 }

@@ -228,7 +228,12 @@ impl FolderRun<'_> {
             }
         };
         let faces = study_mesh.polygons.face_count();
-        let launches = match launches::count(self.arguments.launches, self.settings.effort, faces) {
+        let launches = match launches::count(
+            self.arguments.launches,
+            self.settings.effort,
+            mesh.path.as_deref(),
+            faces,
+        ) {
             Ok(launches) => launches,
             Err(failure) => return failed(FailureKind::NotMeasured, failure.message),
         };

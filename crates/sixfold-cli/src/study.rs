@@ -72,7 +72,7 @@ fn run_single(
     warn_of_debug_build();
     print_before_measuring(&study_mesh, settings, &mut session.text);
     let faces = study_mesh.polygons.face_count();
-    let count = launches::count(arguments.launches, settings.effort, faces)?;
+    let count = launches::count(arguments.launches, settings.effort, mesh, faces)?;
     let bar = Bar::new();
     let measured = measure(
         &study_mesh,
@@ -244,7 +244,12 @@ pub(crate) fn describe_run(run: &Run, most_rounds: usize) -> String {
     parts.push(clock.words().into());
     parts.extend(run.environment.memory_phrases());
     let rounds = counted(most_rounds, "round", "rounds");
-    parts.push(format!("medians of up to {rounds}"));
+    parts.push(match run.settings.launches {
+        None => format!("medians of up to {rounds}"),
+        Some(launches) => {
+            format!("means over {launches} launches of medians; up to {rounds} in total")
+        }
+    });
     parts.push(format!("seed {seed}"));
     parts.join("; ") + "."
 }

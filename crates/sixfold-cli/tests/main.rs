@@ -12,6 +12,7 @@ mod golden;
 mod help_texts;
 mod interrupt;
 mod json_csv;
+mod launches;
 mod many;
 mod memory;
 mod neighbours;

@@ -15,37 +15,34 @@ use crate::labs::study::conclude;
 ///
 /// # Errors
 ///
-/// Returns an error if studies of one mesh have different settings (their seeds and budgets may differ), or
-/// are of different meshes with the same name.
+/// Returns an error if a document does not repeat the others, see [`Results::check_repeats`].
 pub fn pool_launches(launches: Vec<Results>) -> Result<Results, MergeError> {
+    for (i, launch) in launches.iter().enumerate() {
+        launches[..i]
+            .iter()
+            .try_for_each(|earlier| earlier.check_repeats(launch))?;
+    }
     let mut pooled = Results::default();
-    let mut groups: Vec<Vec<Report>> = Vec::new();
-    let mut others = Vec::new();
+    let mut studies: Vec<Vec<Report>> = Vec::new();
+    let mut failures = Vec::new();
     for launch in launches {
         pooled.plan(launch.planned);
         pooled.add_notices(launch.notices);
-        others.push((launch.failures, Vec::new()));
+        failures.extend(launch.failures);
         for finding in launch.findings {
-            match finding {
-                Finding::Study(study) => {
-                    let same = |group: &&mut Vec<Report>| group[0].mesh.name == study.mesh.name;
-                    match groups.iter_mut().find(same) {
-                        Some(group) => {
-                            group[0].check_repeats(&study)?;
-                            group.push(*study);
-                        }
-                        None => groups.push(vec![*study]),
-                    }
-                }
-                finding => others.last_mut().expect("pushed above").1.push(finding),
+            let Finding::Study(study) = finding else {
+                pooled.add(finding);
+                continue;
+            };
+            let same = |group: &&mut Vec<Report>| group[0].mesh.name == study.mesh.name;
+            match studies.iter_mut().find(same) {
+                Some(group) => group.push(*study),
+                None => studies.push(vec![*study]),
             }
         }
     }
-    pooled.extend(groups.into_iter().map(|group| pool_studies(group).into()));
-    for (failures, findings) in others {
-        pooled.add_failures(failures);
-        pooled.extend(findings);
-    }
+    pooled.extend(studies.into_iter().map(|group| pool_studies(group).into()));
+    pooled.add_failures(failures);
     Ok(pooled)
 }
 

@@ -404,16 +404,33 @@ fn sampling(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
 
 /// How times and intervals are computed from samples.
 fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
+    let launches = rows.iter().filter(|row| !row.row.launch_ns.is_empty());
+    let (several, one) = (
+        launches.clone().count() > 0,
+        launches.count() < rows.iter().filter(|row| is_timed(row)).count(),
+    );
     let mut sentences = vec![match is_corrected(rows) {
+        true if several => "Each command ran in several launches, which are fresh processes. A time in a launch is the median of its \
+                 samples, corrected for the drift of the machine from round to round: the model ln time = round + backend \
+                 + residual is fitted by median polish (Tukey 1977). A time is the geometric mean over the launches."
+            .into(),
         true => "A time is the median of the samples, corrected for the drift of the machine from round to round: the \
                  model ln time = round + backend + residual is fitted by median polish (Tukey 1977)."
             .into(),
         false => "A time is the median of the samples.".to_owned(),
     }];
     let has_interval = |row: &TimeRow<'_>| row.row.ci_low_ns.is_some();
-    if is_corrected(rows) && rows.iter().any(has_interval) {
+    if several {
         sentences.push(
-            "Intervals are 95 % confidence intervals from batch means with six batches (Schmeiser 1982) by Student's \
+            "Intervals of results with several launches are 95 % confidence intervals of the mean of the logarithms over the \
+             launches, by Student's distribution; a ratio is formed within each launch (Kalibera and Jones 2013, 2020). The \
+             intervals of times are widened for a drift from study to study with a standard deviation of 1 %."
+                .into(),
+        );
+    }
+    if one && is_corrected(rows) && rows.iter().any(has_interval) {
+        sentences.push(
+            "Intervals of results with one launch are 95 % confidence intervals from batch means with six batches (Schmeiser 1982) by Student's \
              distribution, widened for a drift from study to study with a standard deviation of 1 % (Kalibera and \
              Jones 2013)."
                 .into(),

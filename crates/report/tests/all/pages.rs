@@ -224,7 +224,7 @@ fn the_first_screen_answers() {
             .iter()
             .map(|row| row.figures[column].as_ref().expect("measured"));
         let figures: Vec<&SummaryFigure> = figures.collect();
-        let best = |figure: &&&SummaryFigure| matches!(figure.rank, Rank::Best | Rank::Tied);
+        let best = |figure: &&&SummaryFigure| matches!(figure.rank, Rank::Best | Rank::Shared);
         assert!(
             figures
                 .iter()

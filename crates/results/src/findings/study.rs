@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
 use crate::launches::LaunchRows;
-use crate::merge::MergeError;
 use crate::numbers::{counted, list, shown_ratio};
 use crate::operation::Purpose;
 use crate::pool::{Overall, overall};
@@ -145,20 +144,6 @@ impl Report {
             samples: &self.samples,
             control: self.control.as_ref(),
         }
-    }
-
-    /// Returns an error if `other` did not repeat this study: it is of another mesh, or was measured with
-    /// other settings. The seed and the budget may differ.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`MergeError::OtherMesh`] or [`MergeError::OtherSettings`].
-    pub fn check_repeats(&self, other: &Self) -> Result<(), MergeError> {
-        if self.mesh.sha256 != other.mesh.sha256 {
-            let mesh = other.mesh.name.clone();
-            return Err(MergeError::OtherMesh { mesh });
-        }
-        self.run.check_repeats(&other.run)
     }
 
     fn all_rows(&self) -> Rows<'_> {

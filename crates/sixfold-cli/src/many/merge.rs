@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use sixfold_results::{Policy, Results};
+use sixfold_study::pool_launches;
 
 use super::folder::Folder;
 use crate::arguments::Merge;
@@ -26,7 +27,10 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         let file = load::results_path(place);
         check_not_overwritten("the results", &file, &options)?;
     }
-    let mut merged = merged(&arguments.results)?;
+    let mut merged = match arguments.repeat {
+        true => repeated(&arguments.results)?,
+        false => merged(&arguments.results)?,
+    };
     let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     let mut session = Session::open(None::<&Path>, &arguments.files, Policy::System)?;
     super::print_all(&merged, &mut session.text);
@@ -36,6 +40,23 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     }
     let written = written.and(paper::write_if(paper.as_ref(), &merged, &command_line()));
     exit_code(written, &merged, false)
+}
+
+/// Reads the results in `places`, and pools them as launches of one measurement.
+fn repeated(places: &[PathBuf]) -> Result<Results, Failure> {
+    let mut launches: Vec<Results> = Vec::new();
+    for place in places {
+        let results = load::read_results(place)?;
+        let checked = launches
+            .iter()
+            .try_for_each(|earlier| earlier.check_repeats(&results));
+        checked.map_err(|error| {
+            let file = load::results_path(place);
+            Failure::usage(format!("{}: {error}", file.display()))
+        })?;
+        launches.push(results);
+    }
+    pool_launches(launches).map_err(Failure::usage)
 }
 
 /// Reads and merges the results in `places`.

@@ -153,7 +153,7 @@ fn studies_that_cannot_be_pooled_are_not_merged() {
     other.mesh.sha256 = "another".into();
     for (second, message) in [
         (slower, "is 60 s, expected 2 rounds"),
-        (again, "both have a study of a: compare"),
+        (again, "both have a study of a: pool them with --repeat"),
         (other, "but of different meshes"),
     ] {
         let mut merged = Results::from(one.clone());

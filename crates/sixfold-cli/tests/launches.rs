@@ -1,0 +1,356 @@
+//! Several launches of a study: pooled documents, a launch that dies, interruptions, and `merge --repeat`.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::process::Child;
+
+use serde_json::Value;
+
+use crate::run::{Run, Sixfold, run_ok, text, wait_for};
+
+const STUDY: [&str; 6] = [
+    "study",
+    "grid.obj",
+    "--operations",
+    "build,circulate",
+    "--backends",
+    "face-vertex,half-edge",
+];
+
+fn with_grid() -> Sixfold {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    sixfold
+}
+
+/// Returns the arguments of a short study, and `more`.
+fn study<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    STUDY.iter().chain(more).copied().collect()
+}
+
+fn document(sixfold: &Sixfold, name: &str) -> Value {
+    serde_json::from_str(&text(sixfold, name)).expect("JSON")
+}
+
+/// Returns the times of each row in each launch.
+fn launches_of_rows(document: &Value) -> Vec<usize> {
+    let rows = document["findings"][0]["results"].as_array().expect("rows");
+    let launches = rows.iter().map(|row| &row["launch_ns"]);
+    launches
+        .map(|launches| {
+            let times = launches.as_array().expect("several launches");
+            times.iter().filter(|ns| ns.is_f64()).count()
+        })
+        .collect()
+}
+
+fn launches_of_samples(document: &Value) -> Vec<u64> {
+    let samples = &document["findings"][0]["samples"][0]["launches"];
+    let launches = samples.as_array().expect("several launches").iter();
+    launches.map(|n| n.as_u64().expect("a number")).collect()
+}
+
+#[test]
+fn a_study_of_three_launches_has_three_values_of_each_time() {
+    let sixfold = with_grid();
+    let arguments = study(&[
+        "--rounds",
+        "2",
+        "--launches",
+        "3",
+        "--json",
+        "all.json",
+        "--samples-csv",
+        "all.csv",
+    ]);
+    let run = run_ok(&sixfold, &arguments);
+    assert!(
+        run.stdout
+            .replace('\n', " ")
+            .contains("means over 3 launches of medians; up to 6 rounds in total"),
+        "{run:?}"
+    );
+    let all = document(&sixfold, "all.json");
+    assert_eq!(launches_of_rows(&all), [3; 4]);
+    assert_eq!(launches_of_samples(&all), [0, 0, 1, 1, 2, 2]);
+    assert_eq!(
+        all["findings"][0]["samples"][0]["rounds"],
+        serde_json::json!([0, 1, 2, 3, 4, 5])
+    );
+    let settings = &all["runs"][0]["settings"];
+    assert_eq!(
+        (
+            &settings["launches"],
+            &settings["rounds"],
+            &settings["seed"]
+        ),
+        (&3.into(), &2.into(), &1.into())
+    );
+    // The picture is that of the first process, which a launch does not draw.
+    assert!(all["meshes"][0]["picture"].is_string());
+    let csv = text(&sixfold, "all.csv");
+    let last = csv.lines().last().expect("a sample");
+    assert!(last.contains(",2,5,"), "launch and round: {last}");
+    // The page and the paper show the launches.
+    run_ok(&sixfold, &["report", "all.json", "--to", "page"]);
+    let page = text(&sixfold, "page/report.md");
+    assert!(page.contains("2 rounds each in 3 launches"), "{page}");
+}
+
+#[test]
+fn the_results_on_standard_output_are_those_of_all_launches() {
+    let sixfold = with_grid();
+    let run = run_ok(
+        &sixfold,
+        &study(&["--rounds", "1", "--launches", "2", "--json", "-"]),
+    );
+    let all: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(launches_of_rows(&all), [2; 4]);
+}
+
+#[test]
+fn each_mesh_of_a_folder_and_of_a_report_has_its_launches() {
+    let sixfold = with_grid();
+    sixfold.grid("other.obj", 9);
+    let arguments = [
+        "--rounds",
+        "1",
+        "--launches",
+        "2",
+        "--report",
+        "all",
+        "--backends",
+        "face-vertex,half-edge",
+    ];
+    let meshes = [
+        "study",
+        "grid.obj",
+        "other.obj",
+        "--operations",
+        "build,circulate",
+    ];
+    run_ok(&sixfold, &[&meshes[..], &arguments].concat());
+    let all = document(&sixfold, "all/results.json");
+    let names = all["meshes"]
+        .as_array()
+        .expect("meshes")
+        .iter()
+        .map(|mesh| &mesh["name"]);
+    assert_eq!(names.collect::<Vec<_>>(), ["grid.obj", "other.obj"]);
+    for finding in all["findings"].as_array().expect("studies") {
+        assert_eq!(
+            finding["results"][0]["launch_ns"].as_array().map(Vec::len),
+            Some(2)
+        );
+    }
+}
+
+#[test]
+fn studies_that_repeat_one_measurement_are_pooled() {
+    let sixfold = with_grid();
+    run_ok(&sixfold, &study(&["--rounds", "2", "--json", "a.json"]));
+    run_ok(
+        &sixfold,
+        &study(&[
+            "--rounds",
+            "2",
+            "--seed",
+            "7",
+            "--launches",
+            "2",
+            "--json",
+            "b.json",
+        ]),
+    );
+    run_ok(
+        &sixfold,
+        &[
+            "merge", "--repeat", "a.json", "b.json", "--json", "all.json",
+        ],
+    );
+    let all = document(&sixfold, "all.json");
+    assert_eq!(launches_of_rows(&all), [3; 4]);
+    assert_eq!(launches_of_samples(&all), [0, 0, 1, 1, 2, 2]);
+    assert_eq!(all["runs"][0]["settings"]["launches"], 3);
+
+    let refused = |arguments: &[&str], why: &str| {
+        let run = sixfold.run(arguments);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.contains(why), "{run:?}");
+    };
+    refused(
+        &["merge", "a.json", "b.json", "--json", "-"],
+        "the settings differ",
+    );
+    let copy = "a.json: this file and an earlier one have the same samples of grid.obj";
+    refused(
+        &[
+            "merge", "--repeat", "b.json", "a.json", "a.json", "--json", "-",
+        ],
+        copy,
+    );
+    run_ok(
+        &sixfold,
+        &[
+            "study",
+            "grid.obj",
+            "--operations",
+            "build",
+            "--rounds",
+            "1",
+            "--json",
+            "c.json",
+        ],
+    );
+    refused(
+        &["merge", "--repeat", "a.json", "c.json", "--json", "-"],
+        "c.json: the settings differ: --backends",
+    );
+    sixfold.grid("grid.obj", 5);
+    run_ok(&sixfold, &study(&["--rounds", "2", "--json", "d.json"]));
+    refused(
+        &["merge", "--repeat", "a.json", "d.json", "--json", "-"],
+        "of different meshes",
+    );
+}
+
+#[test]
+fn numbers_of_launches_that_are_not_possible_are_refused() {
+    let sixfold = with_grid();
+    let refused = |arguments: &[&str], why: &str| {
+        let run = sixfold.run(&study(arguments));
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.replace('\n', " ").contains(why), "{run:?}");
+    };
+    for number in ["0", "-1", "many"] {
+        refused(
+            &["--launches", number],
+            "write a whole number of launches, at least 1",
+        );
+    }
+    refused(
+        &["--launches", "5", "--budget", "2s"],
+        "a budget of 2 s holds at most 4 launches on this mesh",
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_mesh_that_can_be_read_once_is_measured_in_one_launch() {
+    let sixfold = with_grid();
+    let piped = |more: &str| {
+        let binary = env!("CARGO_BIN_EXE_sixfold");
+        let script = format!(
+            "rm -f pipe.obj; mkfifo pipe.obj; cat grid.obj > pipe.obj & {binary} study pipe.obj --operations build --rounds 1 {more}"
+        );
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &script]).current_dir(sixfold.folder());
+        Run::from_output(command.output().expect("sh runs"))
+    };
+    let run = piped("");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = piped("--launches 2");
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(
+        run.stderr.contains("so it cannot be read 2 times"),
+        "{run:?}"
+    );
+}
+
+/// Starts a study of three launches, and calls `at_second` with the process when the second one has begun. Returns
+/// its end.
+#[cfg(target_os = "linux")]
+fn disturbed(sixfold: &Sixfold, at_second: impl FnOnce(&Child)) -> Run {
+    let mut child = sixfold.start(&study(&[
+        "--rounds",
+        "400",
+        "--launches",
+        "3",
+        "--json",
+        "all.json",
+    ]));
+    let mut errors = BufReader::new(child.stderr.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("launch 2 of 3: measuring") {
+        line.clear();
+        assert!(
+            errors.read_line(&mut line).expect("UTF-8") > 0,
+            "it ended early"
+        );
+    }
+    at_second(&child);
+    let mut rest = String::new();
+    errors.read_to_string(&mut rest).expect("UTF-8");
+    let lines = rest.lines().filter(|line| !line.starts_with("progress: "));
+    let stderr = lines.collect::<Vec<_>>().join(" ");
+    let output = child.wait_with_output().expect("it ends");
+    Run {
+        stderr,
+        ..Run::from_output(output)
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_launch_that_is_killed_is_named_and_left_out() {
+    let sixfold = with_grid();
+    let run = disturbed(&sixfold, |child| {
+        let id = child.id();
+        let launches =
+            fs::read_to_string(format!("/proc/{id}/task/{id}/children")).expect("its launch");
+        let killed = std::process::Command::new("kill")
+            .arg("-9")
+            .args(launches.split_whitespace())
+            .status();
+        assert!(killed.expect("kill runs").success());
+    });
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.stderr
+            .contains("launch 2 of 3 is left out: it ended with signal: 9"),
+        "{run:?}"
+    );
+    let all = document(&sixfold, "all.json");
+    assert_eq!(launches_of_rows(&all), [2; 4]);
+    assert!(
+        all["notices"]
+            .to_string()
+            .contains("launch 2 of 3 is left out")
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interruption_keeps_what_the_launches_have_measured() {
+    let sixfold = with_grid();
+    // Only the first process gets the signal; it tells the launch.
+    let run = disturbed(&sixfold, |child| crate::run::send("INT", child));
+    assert_eq!(run.code, Some(4), "{run:?}");
+    let all = document(&sixfold, "all.json");
+    assert_eq!(all["findings"][0]["interrupted"], true);
+    assert!(
+        launches_of_rows(&all)
+            .iter()
+            .all(|&launches| (1..=2).contains(&launches)),
+        "{all}"
+    );
+}
+
+/// A launch does not outlive the process that started it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_launch_ends_with_its_command() {
+    let sixfold = with_grid();
+    let mut launches = String::new();
+    disturbed(&sixfold, |child| {
+        let id = child.id();
+        launches =
+            fs::read_to_string(format!("/proc/{id}/task/{id}/children")).expect("its launch");
+        crate::run::send("KILL", child);
+    });
+    for launch in launches.split_whitespace() {
+        let state = || fs::read_to_string(format!("/proc/{launch}/stat")).unwrap_or_default();
+        // A zombie has ended; nobody waits for it in some containers.
+        wait_for(|| (state().is_empty() || state().contains(") Z ")).then_some(()));
+    }
+}
