@@ -35,8 +35,8 @@ fn written_fields() -> BTreeSet<String> {
     sixfold.grid("grid.obj", 12);
     sixfold.file("t.obj", TETRAHEDRON);
     let commands: [&[&str]; 8] = [
-        &["study", "grid.obj", "--rounds", "2"],
-        &["study", "t.obj", "--rounds", "2"],
+        &["study", "grid.obj", "--rounds", "2", "--launches", "2"],
+        &["study", "t.obj", "--rounds", "2", "--launches", "2"],
         &["orders", "grid.obj", "--rounds", "2"],
         &["growth", "--to", "2000", "--steps", "3", "--rounds", "2"],
         &["why", "grid.obj", "--rounds", "2"],
