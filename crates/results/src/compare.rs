@@ -1,8 +1,8 @@
 //! Comparison of two documents: what changed between machines, compilers or commits.
 //!
-//! Two measurements at different times have no rounds in common. Their times are therefore compared
-//! by the ratio of the medians. The confidence interval of the ratio is computed from the intervals
-//! of both medians. The speed of a machine may also drift between two measurements, and the samples
+//! Two measurements at different times have no rounds and no launches in common. If both have several
+//! launches, the ratio and its interval come from the values of the launches. Otherwise the times are compared
+//! by the ratio of the medians of their samples, and the interval is computed from the intervals of both medians. The speed of a machine may also drift between two measurements, and the samples
 //! do not show this drift. [`DRIFT`] is the default limit for the drift.
 
 mod matching;
@@ -17,6 +17,7 @@ use crate::document::{Results, SCHEMA};
 use crate::environment::Environment;
 use crate::finding::Finding;
 use crate::json::write_json;
+use crate::launches::ratio_of_studies;
 use crate::ranking::CLEAR_DIFFERENCE;
 use crate::rows::Standing;
 use crate::run::Run;
@@ -140,10 +141,10 @@ pub struct Change {
     pub before_samples: usize,
     /// Number of samples in the second document.
     pub after_samples: usize,
-    /// The median time in the second document divided by the median time in the first.
+    /// The time in the second document divided by the time in the first.
     pub ratio: f64,
     /// Lower end of the 95 % confidence interval of `ratio`; `None` if a document has fewer than
-    /// three samples.
+    /// two launches with this time, or one launch with fewer than three samples.
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
@@ -305,10 +306,18 @@ fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
 fn change(before: &MeasuredFigure<'_>, after: &MeasuredFigure<'_>, drift: f64) -> Option<Change> {
     let [a, b] = [before, after].map(|measured| &measured.figure);
     let (before_ns, after_ns) = (a.row.median_ns?, b.row.median_ns?);
-    let quotient = quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
-        let value = after_ns / before_ns;
-        value.is_finite().then_some((value, None))
-    });
+    let has_launches = ![a, b].iter().any(|figure| figure.row.launch_ns.is_empty());
+    let quotient = match has_launches {
+        true => {
+            let launches = [&*b.row.launch_ns, &*a.row.launch_ns];
+            let ratio = ratio_of_studies([after_ns, before_ns], launches);
+            ratio.map(|ratio| (ratio.value, ratio.interval))
+        }
+        false => quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
+            let value = after_ns / before_ns;
+            value.is_finite().then_some((value, None))
+        }),
+    };
     let (ratio, interval) = quotient?;
     let both = a.row.checksum.zip(b.row.checksum);
     let comparable = a.row.sample_size == b.row.sample_size;

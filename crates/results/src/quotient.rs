@@ -1,6 +1,7 @@
 //! Ratios of the times of two backends: each backend can be the baseline of the others.
 
 use crate::findings::study::Report;
+use crate::launches::ratio_over_launches;
 use crate::numbers::shown_ratio;
 use crate::pool::{decade, mean_over_sizes};
 use crate::ranking::ratio;
@@ -13,8 +14,8 @@ use crate::time::Time;
 pub struct Quotient {
     /// The quotient of the times; over several meshes, the geometric mean.
     pub ratio: f64,
-    /// The 95 % interval of `ratio`: on one mesh, of the ratios within rounds; else of the mean over the
-    /// meshes. `None` with fewer than three samples or meshes.
+    /// The 95 % interval of `ratio`: on one mesh, of the ratios within launches, or within the rounds of the only
+    /// launch; else of the mean over the meshes. `None` with fewer than two launches, or three samples or meshes.
     pub interval: Option<[f64; 2]>,
     /// The number of meshes.
     pub meshes: usize,
@@ -24,21 +25,24 @@ impl Report {
     /// Returns the time of `backend` divided by the time of `other`, as the quotient of the shown times per
     /// element. `None` if one of the times was not measured, or if one of the backends did other work.
     pub fn quotient(&self, operation: &str, backend: &str, other: &str) -> Option<Quotient> {
-        let time = |name| {
-            let row = measured(self, operation, name)?;
-            row.ns_per_element
-        };
-        let value = shown_ratio(time(backend)?, time(other)?);
-        let samples = |name| {
+        let [own, other] = [backend, other].map(|name| measured(self, operation, name));
+        let (own, other) = (own?, other?);
+        let value = shown_ratio(own.ns_per_element?, other.ns_per_element?);
+        let samples = |row: &ResultRow| {
             let mut samples = self.samples.iter();
-            samples.find(|s| !s.control && s.backend == name && s.operation == operation)
+            samples.find(|s| !s.control && s.backend == row.backend && s.operation == operation)
         };
-        let within_rounds = samples(backend).zip(samples(other));
-        let within_rounds =
-            within_rounds.and_then(|(own, other)| ratio(&counted(own), &counted(other)));
+        let found = match own.launch_ns.is_empty() {
+            true => samples(own)
+                .zip(samples(other))
+                .and_then(|(own, other)| ratio(&counted(own), &counted(other))),
+            false => own.median_ns.zip(other.median_ns).and_then(|times| {
+                ratio_over_launches(times.into(), [&own.launch_ns, &other.launch_ns])
+            }),
+        };
         Some(Quotient {
             ratio: value,
-            interval: within_rounds.and_then(|median| median.moved_to(value).interval),
+            interval: found.and_then(|found| found.moved_to(value).interval),
             meshes: 1,
         })
     }
@@ -169,6 +173,23 @@ mod tests {
             );
         }
         assert_eq!(report.quotient(BOUNDARY, "half-edge", "gone"), None);
+    }
+
+    /// The samples have another ratio than the launches, and more variation.
+    #[test]
+    fn intervals_come_from_the_launches_if_there_are_several() {
+        let mut report = report(1.5);
+        for row in &mut report.results {
+            let factor = row.median_ns.expect("measured");
+            row.launch_ns = [1.0, 3.0, 2.0].map(|speed| Some(speed * factor)).into();
+        }
+        let quotient = report.quotient(BOUNDARY, "corner-table", "half-edge");
+        let quotient = quotient.expect("both measured");
+        let [low, high] = quotient.interval.expect("three launches");
+        assert!(high / low < 1.0 + 1e-9, "no variation: {low} to {high}");
+        report.results[0].launch_ns[1..].fill(None);
+        let quotient = report.quotient(BOUNDARY, "corner-table", "half-edge");
+        assert_eq!(quotient.expect("both measured").interval, None);
     }
 
     #[test]

@@ -85,15 +85,13 @@ impl Run {
         self.operation(operation)?.scheme.as_deref()
     }
 
-    /// Adds the launches of `others`, which measured the same.
-    pub fn add_launches(&mut self, others: &[&Self]) {
-        let launches = |settings: &RunSettings| settings.launches.map_or(1, NonZeroU32::get);
-        let settings = others.iter().map(|other| &other.settings);
-        let count = settings.clone().map(launches).sum::<u32>() + launches(&self.settings);
-        let budget_s = settings.map(|settings| settings.budget_s);
-        let budget_s = budget_s.fold(self.settings.budget_s, |sum, own| Some(sum? + own?));
-        self.settings.budget_s = budget_s;
-        self.settings.launches = NonZeroU32::new(count).filter(|_| count > 1);
+    /// Adds the launches of `other`, which measured the same.
+    pub fn add_launches(&mut self, other: &Self) {
+        let launches = |run: &Self| run.settings.launches.map_or(1, NonZeroU32::get);
+        let count = launches(self) + launches(other);
+        let budgets = self.settings.budget_s.zip(other.settings.budget_s);
+        self.settings.budget_s = budgets.map(|(ours, theirs)| ours + theirs);
+        self.settings.launches = NonZeroU32::new(count);
     }
 
     /// Returns an error if `other` has other settings than the seed and the budget, so that it is no further

@@ -17,6 +17,8 @@
 //!    2007). [`UNSEEN_DRIFT`] is the standard deviation between studies, measured with the
 //!    `repeatability_report` example. [`UNSEEN_DRIFT`] gives the second half-width.
 //!
+//! With several launches, [`launches`](crate::launches) sees more than the samples of one process do.
+//!
 //! The two parts are independent, so the half-width is the root of the sum of their squares. Both
 //! parts are relative: the computation uses the logarithms of the times.
 
@@ -217,8 +219,8 @@ pub fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     Some((mean.exp(), interval.map(|ends| ends.map(f64::exp))))
 }
 
-/// Returns the 97.5 % quantile of Student's distribution with `freedom` degrees of freedom; infinity if there
-/// are none.
+/// Returns the 97.5 % quantile of Student's distribution with `freedom` degrees of freedom; infinity for 0
+/// degrees.
 pub(crate) fn student(freedom: f64) -> f64 {
     const QUANTILE: f64 = 0.975;
     StudentsT::new(0.0, 1.0, freedom)

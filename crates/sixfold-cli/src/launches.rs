@@ -9,7 +9,7 @@ use std::env;
 use std::io::{self, BufRead, BufReader, Read};
 use std::num::NonZeroU32;
 use std::path::Path;
-use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::process::{ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,15 +20,13 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use sixfold_results::Results;
 use sixfold_results::numbers::counted;
-use sixfold_study::{Effort, pool_launches};
+use sixfold_study::{Effort, LAUNCH_VARIABLE, pool_launches};
 
 use crate::failure::Failure;
 use crate::mesh_files::shown;
 use crate::progress::{INTERRUPTED, LINES, PROGRESS, PROGRESS_MARK};
 use crate::text::{print_notice, sanitize};
 
-/// The environment variable that makes a process a launch.
-const LAUNCH: &str = "SIXFOLD_LAUNCH";
 /// The first process looks this often whether it is interrupted.
 const PATIENCE: Duration = Duration::from_millis(200);
 /// Time of a launch on a small mesh by default. Fewer, longer launches would have wider intervals, and in shorter
@@ -67,7 +65,7 @@ impl Launch {
     /// Returns the launch that this process is; `None` if the user started it.
     pub(crate) fn current() -> Option<&'static Self> {
         static CURRENT: LazyLock<Option<Launch>> = LazyLock::new(|| {
-            let text = env::var(LAUNCH).ok()?;
+            let text = env::var(LAUNCH_VARIABLE).ok()?;
             serde_json::from_str(&text).ok()
         });
         CURRENT.as_ref()
@@ -229,19 +227,19 @@ fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Re
         message,
     };
     let cannot_start = |cause: io::Error| died(format!("cannot start: {cause}"));
-    let task = serde_json::to_string(launch).expect("numbers are JSON");
+    let task = serde_json::to_string(launch).map_err(|cause| cannot_start(cause.into()))?;
     let mut child = Command::new(env::current_exe().map_err(cannot_start)?)
         .args(env::args_os().skip(1))
-        .env(LAUNCH, task)
+        .env(LAUNCH_VARIABLE, task)
         .env(PROGRESS, LINES)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .map_err(cannot_start)?;
-    let output = child.stdout.take().expect("piped");
-    let output = thread::spawn(|| read_all(output));
-    let lines = lines(&mut child);
+    let (output, errors) = (child.stdout.take(), child.stderr.take());
+    let output = thread::spawn(|| output.map(read_all));
+    let lines = lines(errors);
     let mut said = Vec::new();
     loop {
         if stop.load(Ordering::Relaxed) {
@@ -260,8 +258,8 @@ fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Re
     let stdin = child.stdin.take();
     let status = child.wait().map_err(cannot_start)?;
     drop(stdin);
-    let text = output.join().unwrap_or_default();
-    document(status, &text, &said)
+    let text = output.join().ok().flatten();
+    document(status, &text.unwrap_or_default(), &said)
 }
 
 /// Returns the document of a launch that has ended.
@@ -293,12 +291,13 @@ fn read_all(mut output: ChildStdout) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Returns the lines that a launch writes to standard error.
-fn lines(child: &mut Child) -> Receiver<String> {
+/// Returns the lines of `errors`, the standard error of a launch.
+fn lines(errors: Option<ChildStderr>) -> Receiver<String> {
     let (sender, receiver) = channel();
-    let errors = child.stderr.take().expect("piped");
     thread::spawn(move || {
-        let lines = BufReader::new(errors).lines();
+        let lines = errors
+            .into_iter()
+            .flat_map(|errors| BufReader::new(errors).lines());
         for line in lines.map_while(Result::ok) {
             if sender.send(line).is_err() {
                 break;

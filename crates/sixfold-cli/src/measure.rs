@@ -177,9 +177,9 @@ pub(crate) fn exit_code(
             false => "interrupted: finished results are kept",
         });
     }
-    // The result is not what was asked for.
-    let is_short = others > 0 || launches::has_died();
-    Ok(match is_short && code == ExitCode::SUCCESS {
+    // A dead launch is missing in the result.
+    let is_short = launches::has_died() && !interrupted;
+    Ok(match others > 0 || is_short {
         true => ExitCode::from(MISMATCH),
         false => code,
     })

@@ -214,6 +214,58 @@ fn studies_that_repeat_one_measurement_are_pooled() {
     );
 }
 
+/// The first process has the whole message and the reasons, which a launch only prints.
+#[test]
+fn a_mesh_that_no_backend_holds_has_its_reasons() {
+    let sixfold = Sixfold::new();
+    let faces = "f 1 2 3\nf 2 1 4\nf 1 2 5\n";
+    let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\n";
+    sixfold.file("book.obj", &format!("{points}{faces}"));
+    let study = |launches: &str| {
+        let backends = [
+            "study",
+            "book.obj",
+            "--backends",
+            "half-edge,corner-table",
+            "--rounds",
+            "1",
+        ];
+        let run = sixfold.run(
+            &[
+                &backends[..],
+                &["--json", "out.json", "--launches", launches],
+            ]
+            .concat(),
+        );
+        assert_eq!(run.code, Some(3), "{run:?}");
+        (
+            run.stderr,
+            document(&sixfold, "out.json")["findings"][0]["backends"].to_string(),
+        )
+    };
+    assert_eq!(study("1"), study("2"));
+}
+
+/// An external program can be a command of this kind itself.
+#[test]
+fn external_programs_are_no_launches() {
+    let sixfold = with_grid();
+    let script =
+        "import os, sys; sys.exit('a launch' if 'SIXFOLD_LAUNCH' in os.environ else 'no launch')";
+    sixfold.file("program.py", script);
+    let external = "other=python3 program.py {mesh}";
+    let run = sixfold.run(&study(&[
+        "--rounds",
+        "1",
+        "--launches",
+        "2",
+        "--external",
+        external,
+    ]));
+    assert!(run.stdout.contains("no launch"), "{run:?}");
+    assert!(!run.stdout.contains("a launch"), "{run:?}");
+}
+
 #[test]
 fn numbers_of_launches_that_are_not_possible_are_refused() {
     let sixfold = with_grid();
@@ -350,7 +402,7 @@ fn a_launch_ends_with_its_command() {
     });
     for launch in launches.split_whitespace() {
         let state = || fs::read_to_string(format!("/proc/{launch}/stat")).unwrap_or_default();
-        // A zombie has ended; nobody waits for it in some containers.
+        // A process that has ended keeps the state Z until its parent asks for its exit code.
         wait_for(|| (state().is_empty() || state().contains(") Z ")).then_some(()));
     }
 }

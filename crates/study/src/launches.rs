@@ -6,6 +6,10 @@ use sixfold_workload::{Backend, Operation};
 
 use crate::labs::study::conclude;
 
+/// The environment variable that tells a process of the command `sixfold` that it is a launch. External programs,
+/// which may be such commands themselves, do not get it.
+pub const LAUNCH_VARIABLE: &str = "SIXFOLD_LAUNCH";
+
 /// Pools documents of the same work, one for each launch, as one document. Documents that were pooled before
 /// add all of their launches.
 ///
@@ -68,12 +72,9 @@ fn pool_studies(mut launches: Vec<Report>) -> Report {
         timer: pool_timers(launches.iter().filter_map(|launch| launch.timer)),
         ..Report::default()
     };
-    report.run.add_launches(
-        &launches[1..]
-            .iter()
-            .map(|launch| &launch.run)
-            .collect::<Vec<_>>(),
-    );
+    for launch in &launches[1..] {
+        report.run.add_launches(&launch.run);
+    }
     conclude(&mut report, &Backend::structures());
     report
 }

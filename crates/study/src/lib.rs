@@ -59,7 +59,7 @@ pub use labs::pick::{
 };
 pub use labs::study::{Settings, StudyError, study};
 pub use labs::why::{Timing, WhySettings, why};
-pub use launches::pool_launches;
+pub use launches::{LAUNCH_VARIABLE, pool_launches};
 pub use runner::{BackendRun, BackendRunner};
 pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict};
 pub use sixfold_workload::{

@@ -404,11 +404,9 @@ fn sampling(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
 
 /// How times and intervals are computed from samples.
 fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
-    let launches = rows.iter().filter(|row| !row.row.launch_ns.is_empty());
-    let (several, one) = (
-        launches.clone().count() > 0,
-        launches.count() < rows.iter().filter(|row| is_timed(row)).count(),
-    );
+    let timed = || rows.iter().filter(|row| is_timed(row));
+    let several = timed().any(|row| !row.row.launch_ns.is_empty());
+    let one = timed().any(|row| row.row.launch_ns.is_empty());
     let mut sentences = vec![match is_corrected(rows) {
         true if several => "Each command ran in several launches, which are fresh processes. A time in a launch is the median of its \
                  samples, corrected for the drift of the machine from round to round: the model ln time = round + backend \

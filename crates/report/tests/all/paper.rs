@@ -256,6 +256,19 @@ fn methods_state_rounds_or_budget() {
 }
 
 #[test]
+fn methods_name_the_launches() {
+    let mut all = results(&["ball.obj"]);
+    let [launches, batches] = ["ran in several launches", "batch means"];
+    let text = methods(&all);
+    assert!(text.contains(batches) && !text.contains(launches), "{text}");
+    for row in &mut first_study(&mut all).results {
+        row.launch_ns = vec![row.median_ns; 2];
+    }
+    let text = methods(&all);
+    assert!(text.contains(launches) && !text.contains(batches), "{text}");
+}
+
+#[test]
 fn methods_are_true_for_the_results() {
     let mut all = results(&["ball.obj"]);
     let text = methods(&all);

@@ -10,7 +10,7 @@ use sixfold_results::{
 const FEW_DISTURBED: f64 = 0.1;
 /// Maximum ratio of wall time to processor time on an unshared processor.
 const INTERRUPTED: f64 = 1.05;
-/// Maximum half-width of a narrow interval, as a part of the median.
+/// Maximum half-width of a narrow interval, as a part of the time.
 const WIDE: f64 = 0.1;
 /// Maximum acceptable error of the clock, as a part of the shortest sample.
 const COARSE: f64 = 0.01;
@@ -205,7 +205,7 @@ fn wide(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let (count, all) = (wide.clone().count(), known.len());
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "{count} of {all} intervals extend more than {:.0} % from their median. The widest \
+        "{count} of {all} intervals extend more than {:.0} % from their time. The widest \
          interval extends {:.0} % ({} on {}). Use {} or a quieter machine.",
         100.0 * WIDE,
         100.0 * worst,

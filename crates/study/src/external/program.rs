@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use sixfold_results::{AskedCount, Policy, sanitize};
 
+use crate::launches::LAUNCH_VARIABLE;
+
 /// Version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;
 /// Maximum length of a line in bytes.
@@ -126,6 +128,7 @@ impl<'a> Program<'a> {
         }
         // The last line of standard error must be the reason of a crash, not the end of a backtrace.
         command.env("RUST_BACKTRACE", "0");
+        command.env_remove(LAUNCH_VARIABLE);
         command.stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         // Ctrl-C must reach only Sixfold. The program ends when its input is closed.

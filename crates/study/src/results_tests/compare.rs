@@ -75,6 +75,51 @@ fn compared(
     compare(&before.clone().into(), &after.clone().into(), settings)
 }
 
+/// The samples say nothing about what differs from process to process: with launches, they do not decide.
+#[test]
+fn studies_with_launches_are_compared_by_their_launches() {
+    let with_launches = |factors: [f64; 3]| {
+        let mut report = report(|_, _| 1.0);
+        for row in &mut report.results {
+            let ns = row.median_ns.expect("measured");
+            row.launch_ns = factors.map(|factor| Some(ns * factor)).into();
+            row.median_ns = Some(ns * factors.iter().product::<f64>().cbrt());
+        }
+        report
+    };
+    let settings = CompareSettings::default();
+    let verdicts = |after: [f64; 3]| {
+        let changes = compared(
+            &with_launches([1.0, 1.01, 0.99]),
+            &with_launches(after),
+            settings,
+        );
+        let rows = changes.expect("one memory state").rows;
+        let row = &rows[0];
+        assert!(
+            (row.ratio - row.after_ns / row.before_ns).abs() < 1e-9,
+            "{row:?}"
+        );
+        rows.into_iter().map(|row| row.verdict).collect::<Vec<_>>()
+    };
+    assert!(
+        verdicts([1.5, 1.52, 1.48])
+            .iter()
+            .all(|&verdict| verdict == Verdict::Slower)
+    );
+    // On average as slow, but one launch is as fast as before.
+    assert!(
+        verdicts([1.0, 1.5, 2.25])
+            .iter()
+            .all(|&verdict| verdict == Verdict::Same)
+    );
+    let one = compared(&report(|_, _| 1.0), &with_launches([1.5; 3]), settings);
+    assert!(
+        one.expect("one memory state").rows[0].ci_low.is_some(),
+        "from the samples"
+    );
+}
+
 #[test]
 fn a_known_change_is_found_and_nothing_else() {
     let before = report(|_, _| 1.0);
