@@ -184,3 +184,18 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         self.vertex_holes.insert(v.index());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_face_is_found_anywhere_in_a_long_fan() {
+        let fan: Vec<FaceId> = (0..100).rev().map(FaceId::new).collect();
+        for (place, &face) in fan.iter().enumerate() {
+            assert_eq!(find(&fan, face), Some(place));
+        }
+        assert_eq!(find(&fan, FaceId::new(100)), None);
+        assert_eq!(find(&[], FaceId::new(0)), None);
+    }
+}
