@@ -105,8 +105,8 @@ class Study:
         return self.ns(operation, backend) / min(ns for ns in times if ns)
 
     def leaders(self, operation):
-        """Returns the backends that are best or tied, from enough samples."""
-        led = lambda row: row and row["standing"] in ("best", "tied") and row["samples"] >= ENOUGH
+        """Returns the backends that are best or share the first place, from enough samples."""
+        led = lambda row: row and row["standing"] in ("best", "equal", "undecided", "tied") and row["samples"] >= ENOUGH
         return [name for name in self.backends if led(self.rows.get((operation, name)))]
 
     def won(self, backend):
@@ -157,7 +157,7 @@ class Workload:
         return self.rows[backend]["samples"] >= ENOUGH
 
     def leaders(self):
-        """Returns the backends that are fastest or tied. Empty if there are too few samples for a winner."""
+        """Returns the backends that are fastest or share the first place. Empty if there are too few samples for a winner."""
         if not self.enough(self.fastest):
             return []
         return [name for name, row in self.rows.items() if row["tied_with_best"] and self.enough(name)]

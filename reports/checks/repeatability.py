@@ -24,7 +24,7 @@ def runs():
 
 def leaders():
     """Returns for each relation how often each backend is best or tied."""
-    rows = [line.strip("| ").split(" | ") for line in data.content(OUTPUT).splitlines() if re.search(r"(best|tied) \d", line)]
+    rows = [line.strip("| ").split(" | ") for line in data.content(OUTPUT).splitlines() if re.search(r"(best|shared|tied) \d", line)]
     led = lambda cell: {each.split()[0]: sum(map(int, re.findall(r"\d+", each))) for each in cell.split("; ")}
     return {relation: led(cell) for relation, cell in rows}
 
