@@ -136,14 +136,6 @@ impl Cell {
         self.standing.is_some_and(Standing::shares_first)
     }
 
-    /// Returns how the backend shares the first place.
-    pub(crate) fn shared_word(&self) -> &'static str {
-        match self.standing {
-            Some(Standing::Equal) => "equal",
-            _ => "undecided",
-        }
-    }
-
     /// Returns the remark for tables, such as `best`.
     pub(crate) fn note(&self) -> String {
         let mut notes = Vec::new();

@@ -231,6 +231,14 @@ fn caption(cells: &[&Cell], note: &str) -> String {
         (has(|cell| cell.interval.is_some()), "Thin lines are 95 % intervals.".into()),
         (has(|cell| cell.is_best() || cell.shares_first()), "The fastest, and those that share the first place, are bold.".into()),
         (
+            has(|cell| cell.standing == Some(Standing::Equal)),
+            "=: equal to the fastest within 5 %.".into(),
+        ),
+        (
+            has(|cell| cell.standing == Some(Standing::Undecided)),
+            "?: undecided, perhaps the fastest.".into(),
+        ),
+        (
             has(|cell| cell.source == Source::Sampled),
             "~: measured on some of the elements.".into(),
         ),
@@ -347,7 +355,8 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
         text_from = BARS[1];
     }
     let text = match cell.times_text() {
-        text if cell.shares_first() => format!("{text} {}", cell.shared_word()),
+        text if cell.standing == Some(Standing::Equal) => format!("{text} ="),
+        text if cell.standing == Some(Standing::Undecided) => format!("{text} ?"),
         text => text,
     };
     debug_assert!(text_from + text_width(&text, 12) < WIDTH + 20.0, "{text}");

@@ -1,8 +1,8 @@
 //! The tables of the page: the structures by kind of work, all operations, and plain tables.
 
 use maud::{Markup, html};
-use sixfold_results::Quotient;
 use sixfold_results::numbers::counted;
+use sixfold_results::{Quotient, Standing};
 
 use crate::figure::Table;
 use crate::matrix::{Cell, Line, Matrix, Source};
@@ -165,7 +165,8 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
                 Some(_) => {
                     @let text = cell.times_text();
                     @if cell.is_best() { b { (text) } } @else { (text) }
-                    @if cell.shares_first() { " " span.mark { (cell.shared_word()) } }
+                    @if cell.standing == Some(Standing::Equal) { " " span.mark { "equal" } }
+                    @if cell.standing == Some(Standing::Undecided) { " " span.mark { "undecided" } }
                     @if let Some(interval) = cell.interval_text() { small { (interval) } }
                 }
                 None => {
