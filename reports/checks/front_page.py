@@ -171,7 +171,16 @@ measuring = Claims(
         Jones 2013, 2020
         within 5 % of 1
         the interval contains 1 and
-        (standard deviation 1 %)
+        (Tukey and McLaughlin 1963)
+        1/20 for ratios and 1/8 for times
+        at most
+        one of 200 comparisons
+        than six times
+        more than 1.3 can be told
+        1.3 × as long or more
+        changed by 10 % unnoticed
+        is then
+        3, not 0
         rounded to 32 bits
         one JSON object per line
         refuses to compare two studies

@@ -100,9 +100,9 @@ impl<'c> Ranked<'c> {
         }
     }
 
-    /// Iterates over the rows beyond the noise, and those with different checksums.
+    /// Iterates over the rows that changed, and those with different checksums.
     pub(crate) fn changed(&self) -> impl Iterator<Item = &'c Change> {
-        let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
+        let changed = |row: &&Change| row.verdict.is_change() || row.other_checksum;
         self.rows.iter().copied().filter(changed)
     }
 
@@ -183,7 +183,7 @@ impl<'c> Ranked<'c> {
         let relative = self.changes.relative.then_some("÷ median");
         let mut columns = vec!["before", "after", "after ÷ before"];
         columns.extend(relative);
-        columns.extend(["95 %", "noise up to", "samples", "verdict"]);
+        columns.extend(["95 %", "can tell", "samples", "verdict"]);
         let mut table = self.table(&columns);
         for row in rows {
             let mut cells = self.cells(&row.measurement);
@@ -199,7 +199,7 @@ impl<'c> Ranked<'c> {
                     || "–".into(),
                     |[low, high]| format!("{} to {}", figure(low), figure(high)),
                 ),
-                times(row.noise),
+                row.detectable.map_or_else(|| "–".into(), times),
                 format!(
                     "{} and {}",
                     grouped(row.before_samples),
@@ -224,7 +224,8 @@ pub(crate) fn verdict_text(row: &Change) -> &'static str {
         _ if row.other_checksum => "different work",
         Verdict::Faster => "faster",
         Verdict::Slower => "slower",
-        Verdict::Same => "equal within the noise",
+        Verdict::Same => "equal",
+        Verdict::CannotTell => "cannot tell",
     }
 }
 
@@ -249,7 +250,8 @@ fn answer(ranked: &Ranked<'_>) -> Vec<String> {
     let changes = ranked.changes;
     let (slower, faster) = (ranked.count(Verdict::Slower), ranked.count(Verdict::Faster));
     let same = ranked.count(Verdict::Same);
-    let different = ranked.rows.len() - slower - faster - same;
+    let open = ranked.count(Verdict::CannotTell);
+    let different = ranked.rows.len() - slower - faster - same - open;
     let Some(overall) = changes.overall else {
         return changes.sentences.first().cloned().into_iter().collect();
     };
@@ -260,11 +262,11 @@ fn answer(ranked: &Ranked<'_>) -> Vec<String> {
     };
     let counts = match slower + faster {
         0 => format!(
-            "Nothing changed beyond the noise: of {all}, {} equal within it{different}.",
+            "No change found: of {all}, {} equal and {open} cannot be told{different}.",
             are(same)
         ),
         _ => format!(
-            "Changes beyond the noise: of {all}, {} slower and {} faster; {} equal within the noise{different}.",
+            "Changes beyond chance: of {all}, {} slower and {} faster; {} equal and {open} cannot be told{different}.",
             are(slower),
             are(faster),
             are(same)
@@ -489,8 +491,8 @@ fn tables(ranked: &Ranked<'_>, [before, after]: [Compared<'_>; 2]) -> Vec<Titled
 
 /// Returns the table of all times, the largest change first.
 fn times_table(ranked: &Ranked<'_>) -> TitledTable {
-    let about = "The largest change first; times of different work are last. A change counts if its 95 % interval \
-                 and its ratio are beyond the noise.";
+    let about = "The largest change first; times of different work are last. A change counts if it is larger than \
+                 chance explains. `can tell` is the smallest change that could be told from chance.";
     let rows = ranked.rows.iter().copied().take(TABLE_ROWS);
     let table = ranked.times_table(rows);
     titled("All compared times", about, table, ranked.rows.len())

@@ -1,9 +1,12 @@
 //! Comparison of two documents: what changed between machines, compilers or commits.
 //!
-//! Two measurements at different times have no rounds and no launches in common. If both have several
-//! launches, the ratio and its interval come from the values of the launches. Otherwise the times are compared
-//! by the ratio of the medians of their samples, and the interval is computed from the intervals of both medians. The speed of a machine may also drift between two measurements, and the samples
-//! do not show this drift. [`DRIFT`] is the default limit for the drift.
+//! Two measurements at different times have no rounds and no launches in common. The ratio of two times is the
+//! quotient of the shown times, and its interval comes from the values of the launches of both. Whether a time
+//! became longer is decided relative to the other times (see [`study_changes`]): the speed of a whole machine
+//! changes from study to study. A comparison of many times must not call one slower by chance: all times of a
+//! comparison together do so with a probability of at most [`FALSE_ALARM`], if the program did not change. A time
+//! that was measured in one launch only cannot be compared, because nothing shows how much it varies from process
+//! to process; it is slower only if it is twice as long.
 
 mod matching;
 mod sentences;
@@ -17,17 +20,15 @@ use crate::document::{Results, SCHEMA};
 use crate::environment::Environment;
 use crate::finding::Finding;
 use crate::json::write_json;
-use crate::launches::ratio_of_studies;
-use crate::ranking::CLEAR_DIFFERENCE;
+use crate::launches::{LASTING_SPEED, LaunchPair, StudyChange, study_changes};
+use crate::ranking::{CLEAR_DIFFERENCE, EQUAL};
 use crate::rows::Standing;
 use crate::run::Run;
-use crate::statistics::{Median, quotient};
+use crate::statistics::{median, quotient};
 use matching::{AllMeasured, CommonMeshes, MeasuredFigure, measurements};
 
-/// Default limit for the drift between two measurements on an unchanged machine, as a ratio of
-/// times. The limit of 20 % is about twice the typical drift of a virtual machine
-/// (reports/repeatability).
-pub const DRIFT: f64 = 1.2;
+/// The probability with which a comparison calls any of its times slower though the program did not change.
+pub const FALSE_ALARM: f64 = 1.0 / 200.0;
 
 /// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,15 +36,16 @@ pub struct CompareSettings {
     /// If true, each ratio is divided by the median of all ratios. Use this option for two machines
     /// of different speed.
     pub relative: bool,
-    /// Ratios of times up to this value count as noise, even if the samples show a difference.
-    pub drift: f64,
+    /// Ratios of times up to this value count as equal, even if they are not due to chance. A time cannot be told
+    /// if a change by the square of this value could be due to chance.
+    pub noise: f64,
 }
 
 impl Default for CompareSettings {
     fn default() -> Self {
         Self {
             relative: false,
-            drift: DRIFT,
+            noise: EQUAL,
         }
     }
 }
@@ -60,8 +62,8 @@ pub struct Changes {
     pub overall: Option<f64>,
     /// True if each ratio was divided by `overall` before the ratio was compared with the noise.
     pub relative: bool,
-    /// Ratios of times up to this value always count as noise.
-    pub drift: f64,
+    /// Ratios of times up to this value always count as equal.
+    pub noise: f64,
     /// The measured times that both documents have, in the order of the first document.
     pub rows: Vec<Change>,
     /// The counts of bytes that differ.
@@ -148,9 +150,10 @@ pub struct Change {
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
-    /// The largest ratio that counts as noise, from `drift` and the controls of both documents.
-    pub noise: f64,
-    /// Whether the second time is shorter, longer, or equal within the noise.
+    /// The smallest ratio that this comparison can tell from chance; `None` if a document has fewer than two
+    /// launches with this time.
+    pub detectable: Option<f64>,
+    /// Whether the second time is shorter, longer or equal, or cannot be told.
     pub verdict: Verdict,
     /// True if the checksums differ. The two measurements then did different work.
     pub other_checksum: bool,
@@ -175,12 +178,21 @@ pub struct BytesChange {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The second time is shorter by more than the noise.
+    /// The second time is shorter, by more than chance explains.
     Faster,
-    /// The second time is longer by more than the noise.
+    /// The second time is longer, by more than chance explains.
     Slower,
-    /// The difference is within the noise.
+    /// The times are equal, or differ by less than what counts.
     Same,
+    /// A change that counts could be due to chance.
+    CannotTell,
+}
+
+impl Verdict {
+    /// Returns whether the time changed.
+    pub const fn is_change(self) -> bool {
+        matches!(self, Self::Faster | Self::Slower)
+    }
 }
 
 /// An operation of a study whose fastest backend changed.
@@ -253,9 +265,25 @@ pub fn compare(
     }
     in_both().try_for_each(|(a, b)| check_memory(a.finding, b.finding))?;
 
-    let CompareSettings { relative, drift } = settings;
-    let rows: Vec<Change> = in_both().filter_map(|(a, b)| change(a, b, drift)).collect();
-    let overall = Median::from_samples(rows.iter().map(|row| row.ratio)).map(|median| median.value);
+    let CompareSettings { relative, noise } = settings;
+    let pairs: Vec<Pair<'_>> = in_both().collect();
+    // The rows of two findings have their launches in common.
+    let of_one = |a: &Pair<'_>, b: &Pair<'_>| {
+        std::ptr::eq(a.0.finding, b.0.finding) && std::ptr::eq(a.1.finding, b.1.finding)
+    };
+    let mut compared = Vec::new();
+    for pairs in pairs.chunk_by(of_one) {
+        compared.extend(changes(pairs, relative));
+    }
+    let overall = median(compared.iter().map(|(row, _)| row.ratio).collect());
+    let level = FALSE_ALARM / (2 * compared.len().max(1)) as f64;
+    let divisor = overall.filter(|_| relative).unwrap_or(1.0);
+    let rows = compared.into_iter().map(|(row, change)| Change {
+        detectable: change.map(|change| change.detectable(level)),
+        verdict: verdict(&row, change, level, noise, divisor),
+        ..row
+    });
+    let rows: Vec<Change> = rows.collect();
     let mut environment: Vec<SettingChange> = Vec::new();
     for (a, b) in in_both() {
         for change in differences(a.finding.run(), b.finding.run()) {
@@ -269,7 +297,7 @@ pub fn compare(
         environment,
         overall,
         relative,
-        drift,
+        noise,
         rows,
         bytes: bytes(in_both()),
         winners: winners(&first, &second),
@@ -277,10 +305,6 @@ pub fn compare(
         only_after: second.without(&first),
         sentences: Vec::new(),
     };
-    let divisor = changes.divisor();
-    for row in &mut changes.rows {
-        row.verdict = verdict(row, divisor);
-    }
     changes.sentences = changes.describe();
     Ok(changes)
 }
@@ -301,27 +325,48 @@ fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
     Ok(())
 }
 
-/// Compares two figures, without the verdict. Returns `None` if there are no times, or if the ratio
-/// is not finite.
-fn change(before: &MeasuredFigure<'_>, after: &MeasuredFigure<'_>, drift: f64) -> Option<Change> {
+/// One figure in both documents.
+type Pair<'r> = (&'r MeasuredFigure<'r>, &'r MeasuredFigure<'r>);
+
+/// Compares the figures of one finding in both documents, without the verdicts. Leaves out figures without a time
+/// and ratios that are not finite.
+fn changes(pairs: &[Pair<'_>], relative: bool) -> Vec<(Change, Option<StudyChange>)> {
+    let timed = pairs.iter().filter_map(|&(a, b)| {
+        let times = [a.figure.row.median_ns?, b.figure.row.median_ns?];
+        (times[1] / times[0]).is_finite().then_some((a, b, times))
+    });
+    let timed: Vec<_> = timed.collect();
+    let launches = timed.iter().map(|(a, b, ns)| LaunchPair {
+        ns: *ns,
+        launches: [&a.figure.row.launch_ns, &b.figure.row.launch_ns],
+    });
+    let found = study_changes(&launches.collect::<Vec<_>>(), relative);
+    let rows = timed.iter().zip(found.rows);
+    rows.map(|((a, b, ns), change)| (row(a, b, *ns, change), change))
+        .collect()
+}
+
+fn row(
+    before: &MeasuredFigure<'_>,
+    after: &MeasuredFigure<'_>,
+    [before_ns, after_ns]: [f64; 2],
+    change: Option<StudyChange>,
+) -> Change {
     let [a, b] = [before, after].map(|measured| &measured.figure);
-    let (before_ns, after_ns) = (a.row.median_ns?, b.row.median_ns?);
-    let has_launches = ![a, b].iter().any(|figure| figure.row.launch_ns.is_empty());
-    let quotient = match has_launches {
-        true => {
-            let launches = [&*b.row.launch_ns, &*a.row.launch_ns];
-            let ratio = ratio_of_studies([after_ns, before_ns], launches);
-            ratio.map(|ratio| (ratio.value, ratio.interval))
-        }
-        false => quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
-            let value = after_ns / before_ns;
-            value.is_finite().then_some((value, None))
-        }),
+    let ratio = after_ns / before_ns;
+    let of_samples = || {
+        let (value, interval) = quotient(&b.counted_ns(), &a.counted_ns())?;
+        Some(interval?.map(|end| end / value * ratio))
     };
-    let (ratio, interval) = quotient?;
+    let interval = change.map(|change| change.interval).or_else(of_samples);
     let both = a.row.checksum.zip(b.row.checksum);
-    let comparable = a.row.sample_size == b.row.sample_size;
-    Some(Change {
+    // The seed chooses the elements of a sample.
+    let seed = |measured: &MeasuredFigure<'_>| measured.finding.run().settings.seed;
+    let comparable = match (a.row.sample_size, b.row.sample_size) {
+        (None, None) => true,
+        (own, other) => own == other && seed(before) == seed(after),
+    };
+    Change {
         measurement: before.key.clone(),
         before_ns,
         after_ns,
@@ -330,10 +375,10 @@ fn change(before: &MeasuredFigure<'_>, after: &MeasuredFigure<'_>, drift: f64) -
         ratio,
         ci_low: interval.map(|[low, _]| low),
         ci_high: interval.map(|[_, high]| high),
-        noise: drift.max(a.noise).max(b.noise),
-        verdict: Verdict::Same,
+        detectable: None,
+        verdict: Verdict::CannotTell,
         other_checksum: comparable && both.is_some_and(|(a, b)| !nearly_equal(a, b)),
-    })
+    }
 }
 
 /// Returns whether two checksums may be of the same work. Sums of `f32` in different orders may
@@ -342,19 +387,30 @@ fn nearly_equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
 }
 
-fn verdict(row: &Change, divisor: f64) -> Verdict {
-    let ratio = row.ratio / divisor;
-    let [low, high] = [row.ci_low, row.ci_high].map(|end| end.map(|end| end / divisor));
-    let (slower, faster) = match low.zip(high) {
-        Some((low, high)) => (low > 1.0, high < 1.0),
-        None => (ratio > CLEAR_DIFFERENCE, ratio < CLEAR_DIFFERENCE.recip()),
+/// Returns the verdict of a row. Without launches, its ratio is divided by `divisor`.
+fn verdict(
+    row: &Change,
+    change: Option<StudyChange>,
+    level: f64,
+    noise: f64,
+    divisor: f64,
+) -> Verdict {
+    let Some(change) = change else {
+        let ratio = row.ratio / divisor;
+        let interval = row.ci_low.zip(row.ci_high);
+        let [low, high] =
+            interval.map_or([ratio; 2], |(low, high)| [low, high].map(|e| e / divisor));
+        return match () {
+            () if ratio > CLEAR_DIFFERENCE.max(noise) && low > 1.0 => Verdict::Slower,
+            () if ratio < CLEAR_DIFFERENCE.max(noise).recip() && high < 1.0 => Verdict::Faster,
+            () => Verdict::CannotTell,
+        };
     };
-    if slower && ratio > row.noise {
-        Verdict::Slower
-    } else if faster && ratio < row.noise.recip() {
-        Verdict::Faster
-    } else {
-        Verdict::Same
+    match change.beyond_chance(level, noise) {
+        Some(ratio) if ratio > 1.0 => Verdict::Slower,
+        Some(_) => Verdict::Faster,
+        None if change.detectable(level) > noise * noise => Verdict::CannotTell,
+        None => Verdict::Same,
     }
 }
 
@@ -468,7 +524,7 @@ impl Changes {
     /// Iterates over the entries of `rows` in which the second time is shorter or longer, or which
     /// have different checksums.
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
-        let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
+        let changed = |row: &&Change| row.verdict.is_change() || row.other_checksum;
         self.rows.iter().filter(changed)
     }
 
@@ -476,6 +532,15 @@ impl Changes {
     /// `overall` if the comparison is relative, 1 otherwise.
     pub fn divisor(&self) -> f64 {
         self.overall.filter(|_| self.relative).unwrap_or(1.0)
+    }
+
+    /// Returns the ratio of all times together if it is larger than the speed of a machine changes between two
+    /// studies, so that the whole program became slower; `None` if it is not, and if the comparison is relative.
+    pub fn slower_as_a_whole(&self) -> Option<f64> {
+        let has_launches = self.rows.iter().any(|row| row.detectable.is_some());
+        let limit = LASTING_SPEED.max(self.noise);
+        self.overall
+            .filter(|&overall| has_launches && !self.relative && overall > limit)
     }
 
     /// Counts the entries of `rows` with the given verdict.

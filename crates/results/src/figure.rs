@@ -30,8 +30,6 @@ pub struct Figure<'r> {
     pub counted: Counted,
     /// The samples of the time; `None` for a row without samples.
     pub samples: Option<&'r Samples>,
-    /// Ratios of times up to this value are noise, as the control of the finding shows.
-    pub noise: f64,
 }
 
 /// Counts of `memory` and `why`. Other labs have none.
@@ -102,7 +100,7 @@ impl From<RefusalKind> for Status {
 }
 
 impl<'r> Figure<'r> {
-    /// Returns a figure of a mesh, without samples and without noise.
+    /// Returns a figure of a mesh, without samples.
     pub(crate) fn new(
         mesh: Option<&'r MeshReport>,
         backend_bytes: Option<usize>,
@@ -118,7 +116,6 @@ impl<'r> Figure<'r> {
             row,
             counted: Counted::default(),
             samples: None,
-            noise: 1.0,
         }
     }
 
@@ -151,7 +148,6 @@ impl<'r> Rows<'r> {
         &self,
         mesh: Option<&'r MeshReport>,
         bytes: impl Fn(&str) -> Option<usize>,
-        noise: impl Fn(&str) -> f64,
     ) -> Vec<Figure<'r>> {
         let unit = |operation: &str| {
             let info = self.run.operation(operation);
@@ -165,7 +161,6 @@ impl<'r> Rows<'r> {
             };
             Figure {
                 samples: samples_of(self.samples, &row.case, &row.operation, &row.backend),
-                noise: noise(&row.operation),
                 ..Figure::new(mesh, bytes(&row.backend), status, row.clone())
             }
         });

@@ -6,19 +6,37 @@
 //! each backend, the [corrected median](crate::corrected_times) of its samples, and the interval comes from
 //! the values of the launches. The ratio of two backends is formed within each launch.
 //!
+//! Two levels of variation are seen: from round to round within a launch, and from launch to launch. A third is
+//! not: what is the same in all launches of a study and different in the next, such as the neighbours of the
+//! hour. It is about as strong as the variation from launch to launch is: a machine that is noisy from second to
+//! second is also noisy from hour to hour. So the squared error of a mean of n launches is s² (1/n + c), where s is
+//! the standard deviation from launch to launch. The constant c is [`LASTING_IN_TIMES`] or [`LASTING_IN_RATIOS`].
+//!
+//! A launch may be disturbed as a whole. So ratios are [trimmed](TRIMMED) means over the launches, and their
+//! intervals are those of trimmed means (Tukey and McLaughlin 1963).
+//!
 //! All computations use the logarithms of the times, and Student's distribution. Two launches have a wide
 //! interval: that is what two launches can tell.
 
+mod between;
 mod rows;
 
-use std::f64::consts::SQRT_2;
-
+pub use between::{LASTING_SPEED, LaunchPair, StudyChange, StudyChanges, study_changes};
 pub use rows::{LaunchRows, PooledRows, pool_rows};
 
-use crate::statistics::{Median, NORMAL, UNSEEN_DRIFT, student};
+use crate::statistics::{Median, median, student};
 
 /// Minimum number of launches for an interval.
 pub const FEWEST_LAUNCHES: usize = 2;
+/// The part of the launches at each end that a trimmed mean leaves out. With fewer than five launches, it leaves
+/// out none.
+pub const TRIMMED: f64 = 0.2;
+/// The variance of a time from study to study that no study sees, divided by the variance from launch to launch.
+///
+/// Measured in twenty studies of a minute on a virtual machine with busy neighbours (reports/repeatability).
+pub const LASTING_IN_TIMES: f64 = 1.0 / 8.0;
+/// The same of a ratio of two times. What slows the whole machine down changes no ratio.
+pub const LASTING_IN_RATIOS: f64 = 1.0 / 20.0;
 /// Maximum number of passes of the fit.
 const MAX_PASSES: usize = 100;
 /// Effects that change by less than this, relative to the time, do not change the result.
@@ -27,9 +45,11 @@ const NEGLIGIBLE: f64 = 1e-12;
 /// Returns the time of each backend over all launches, from its time in each launch; `None` for a backend
 /// without a time. `launches` has a list for each backend, with a value for each launch.
 ///
-/// The time is the geometric mean over the launches. If a backend has no time in some launches, the effects
-/// of the launches and of the backends are fitted by least squares, so that the ratio of two backends is the
-/// quotient of their times, and no backend gains by its absence from a slow launch.
+/// The logarithm of a time is the sum of an effect of the backend and an effect of the launch. The effect of a
+/// launch is the median over the backends, that of a backend is the [trimmed](TRIMMED) mean over the launches, and
+/// both are fitted in turns. So the ratio of two backends is the quotient of their times, one launch in which a
+/// backend was disturbed does not decide, and no backend gains by its absence from a slow launch. Times are those
+/// of a launch with the mean effect; the time of a single backend is the geometric mean.
 ///
 /// If a time is not positive, its logarithm does not exist, and the result has arithmetic means.
 pub fn times_over_launches(launches: &[&[Option<f64>]]) -> Vec<Option<f64>> {
@@ -52,7 +72,10 @@ pub fn times_over_launches(launches: &[&[Option<f64>]]) -> Vec<Option<f64>> {
         let mut moved = 0.0_f64;
         for (effect, logs) in of_backend.iter_mut().zip(&logs) {
             let residuals = logs.iter().zip(&of_launch);
-            let fitted = mean(residuals.filter_map(|(log, launch)| Some((*log)? - launch)));
+            let residuals = residuals.filter_map(|(log, launch)| Some((*log)? - launch));
+            let residuals: Vec<f64> = residuals.collect();
+            let cut = trimmed(residuals.len());
+            let fitted = trimmed_mean(residuals, cut);
             moved = moved.max((fitted.unwrap_or(0.0) - effect.unwrap_or(0.0)).abs());
             *effect = fitted;
         }
@@ -65,7 +88,7 @@ pub fn times_over_launches(launches: &[&[Option<f64>]]) -> Vec<Option<f64>> {
                 let log = logs.get(launch).copied().flatten()?;
                 Some(log - (*backend)?)
             });
-            *effect = mean(residuals).unwrap_or(0.0);
+            *effect = median(residuals.collect()).unwrap_or(0.0);
         }
     }
     let typical = mean(of_launch).unwrap_or(0.0);
@@ -76,17 +99,16 @@ pub fn times_over_launches(launches: &[&[Option<f64>]]) -> Vec<Option<f64>> {
 }
 
 /// Returns the time `ns` of a backend over all launches with its interval, from its time in each launch.
-/// The interval includes the [drift](UNSEEN_DRIFT) that lasts longer than the study. `None` without launches.
+/// `None` without launches.
 pub fn time_over_launches(ns: f64, launches: &[Option<f64>]) -> Option<Median> {
     let logs: Vec<f64> = launches.iter().flatten().map(|ns| ns.ln()).collect();
     let least = launches.iter().copied().flatten().min_by(f64::total_cmp)?;
-    let half_width = half_width(&logs).map(|half| half.hypot(NORMAL * UNSEEN_DRIFT));
+    let half_width = half_width(&logs, 0, LASTING_IN_TIMES);
     Some(around(ns, least, half_width))
 }
 
-/// Returns the ratio of two times over all launches with its interval, from the times in each launch. The
-/// interval has no drift, because the drift of the machine changes both times. `None` if the ratio is not
-/// finite, or if the backends have no launch in common.
+/// Returns the ratio of two times over all launches with its interval, from the times in each launch. `None` if
+/// the ratio is not finite, or if the backends have no launch in common.
 pub fn ratio_over_launches(
     [ns, other_ns]: [f64; 2],
     [launches, others]: [&[Option<f64>]; 2],
@@ -97,51 +119,83 @@ pub fn ratio_over_launches(
         .collect();
     let least = logs.iter().copied().min_by(f64::total_cmp)?.exp();
     let ratio = ns / other_ns;
+    let half_width = half_width(&logs, trimmed(logs.len()), LASTING_IN_RATIOS);
     ratio
         .is_finite()
-        .then(|| around(ratio, least.min(ratio), half_width(&logs)))
+        .then(|| around(ratio, least.min(ratio), half_width))
 }
 
-/// Returns the ratio of the times of one backend in two studies with its interval. The launches of two
-/// studies are not paired, and each study has its own variance (Welch 1947) and its own drift. `None` if the
-/// ratio is not finite.
-pub fn ratio_of_studies(
+/// Returns the difference of two times over all launches with its interval, from the times in each launch.
+/// `None` if the backends have no launch in common.
+pub fn difference_over_launches(
     [ns, other_ns]: [f64; 2],
     [launches, others]: [&[Option<f64>]; 2],
 ) -> Option<Median> {
-    let ratio = ns / other_ns;
-    let logs = |times: &[Option<f64>]| times.iter().flatten().map(|ns| ns.ln()).collect();
-    let [a, b]: [Vec<f64>; 2] = [logs(launches), logs(others)];
-    let errors = squared_error(&a).zip(squared_error(&b));
-    let half_width = errors.and_then(|(own, other)| {
-        let sum = own + other;
-        let part = |error: f64, logs: &[f64]| error * error / (logs.len() as f64 - 1.0);
-        let freedom = match sum > 0.0 {
-            true => sum * sum / (part(own, &a) + part(other, &b)),
-            false => (a.len() + b.len() - 2) as f64,
-        };
-        let half_width = (student(freedom) * sum.sqrt()).hypot(NORMAL * SQRT_2 * UNSEEN_DRIFT);
-        half_width.is_finite().then_some(half_width)
-    });
-    ratio.is_finite().then(|| around(ratio, ratio, half_width))
+    let pairs = launches.iter().zip(others);
+    let differences: Vec<f64> = pairs.filter_map(|(a, b)| Some((*a)? - (*b)?)).collect();
+    let least = differences.iter().copied().min_by(f64::total_cmp)?;
+    let value = ns - other_ns;
+    let half_width = half_width(&differences, trimmed(differences.len()), LASTING_IN_RATIOS);
+    Some(Median {
+        value,
+        least: least.min(value),
+        interval: half_width.map(|half| [value - half, value + half]),
+    })
 }
 
-/// Returns half the width of the 95 % interval of the mean of `logs`. `None` with fewer than two values, or
-/// if a value is not finite.
-fn half_width(logs: &[f64]) -> Option<f64> {
-    let half_width = student(logs.len() as f64 - 1.0) * squared_error(logs)?.sqrt();
+/// Returns half the width of the 95 % interval of the mean of `values` without the `trimmed` smallest and largest
+/// ones, see [`squared_error`].
+fn half_width(values: &[f64], trimmed: usize, lasting: f64) -> Option<f64> {
+    let error = squared_error(values, trimmed, lasting)?;
+    let half_width = student(error.freedom) * error.squared.sqrt();
     half_width.is_finite().then_some(half_width)
 }
 
-/// Returns the square of the standard error of the mean of `logs`; `None` with fewer than two values.
-fn squared_error(logs: &[f64]) -> Option<f64> {
-    let count = logs.len() as f64;
-    if logs.len() < FEWEST_LAUNCHES {
+/// The error of a mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeanError {
+    /// The square of the standard error.
+    pub(crate) squared: f64,
+    /// The degrees of freedom of the estimate.
+    pub(crate) freedom: f64,
+}
+
+/// Returns the error of the mean of `values` without the `trimmed` smallest and largest ones, from the values with
+/// these replaced by their neighbours (Tukey and McLaughlin 1963). `lasting` is the variance that the values do not
+/// show, relative to that which they show. `None` with fewer than [`FEWEST_LAUNCHES`] values, or if a value is not
+/// finite.
+pub(crate) fn squared_error(values: &[f64], trimmed: usize, lasting: f64) -> Option<MeanError> {
+    let count = values.len();
+    let kept = count.checked_sub(2 * trimmed)?;
+    if kept < FEWEST_LAUNCHES || !values.iter().all(|value| value.is_finite()) {
         return None;
     }
-    let mean = logs.iter().sum::<f64>() / count;
-    let squares: f64 = logs.iter().map(|log| (log - mean).powi(2)).sum();
-    Some(squares / (count - 1.0) / count)
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (least, most) = (sorted[trimmed], sorted[count - 1 - trimmed]);
+    let winsorised: Vec<f64> = sorted
+        .iter()
+        .map(|value| value.clamp(least, most))
+        .collect();
+    let mean = winsorised.iter().sum::<f64>() / count as f64;
+    let squares: f64 = winsorised.iter().map(|value| (value - mean).powi(2)).sum();
+    let part_kept = kept as f64 / count as f64;
+    let variance = squares / (count - 1) as f64 / part_kept.powi(2);
+    Some(MeanError {
+        squared: variance * (1.0 / count as f64 + lasting),
+        freedom: (kept - 1) as f64,
+    })
+}
+
+/// Returns the number of values that a trimmed mean of `count` values leaves out at each end.
+pub(crate) fn trimmed(count: usize) -> usize {
+    (TRIMMED * count as f64) as usize
+}
+
+/// Returns the mean without the `trimmed` smallest and largest values; `None` without values.
+fn trimmed_mean(mut values: Vec<f64>, trimmed: usize) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    mean(values[trimmed..values.len() - trimmed].iter().copied())
 }
 
 /// Returns `value` with the interval of `half_width` on the scale of logarithms.

@@ -35,7 +35,7 @@ mod time;
 mod timer;
 
 pub use compare::{
-    BytesChange, Change, Changes, CompareError, CompareSettings, DRIFT, Measurement,
+    BytesChange, Change, Changes, CompareError, CompareSettings, FALSE_ALARM, Measurement,
     MeasurementPart, NewWinner, SettingChange, Verdict, compare,
 };
 pub use corrected::corrected_times;
@@ -53,9 +53,9 @@ pub use findings::orders::{
     Comparison, Factor, Larger, OrderEffect, OrdersReport, StructureEffect,
 };
 pub use findings::pick::{
-    Amount, AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MIX, MeshRanking, Need, OwnBytes,
-    OwnData, PartCost, PickReport, ProgramReport, RUN, Ranked, TurningPoint, WorkloadPart,
-    WorkloadReport,
+    Amount, AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MIX, MeshRanking, Need, OnMesh,
+    OwnBytes, OwnData, PartCost, PickReport, ProgramReport, RUN, Ranked, TurningPoint,
+    WorkloadPart, WorkloadReport,
 };
 pub use findings::slope::Slope;
 pub use findings::spatial_task::{QueryPoints, SpatialTask};

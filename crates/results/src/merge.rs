@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use crate::document::Results;
 use crate::finding::Finding;
+use crate::findings::pick::PickReport;
 use crate::findings::study::Report;
+use crate::rows::Samples;
 
 /// The reason why two documents cannot be merged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -33,6 +35,12 @@ pub enum MergeError {
          measurement, compare them with `sixfold compare`, or leave one out"
     )]
     SecondStudy { mesh: String },
+    /// Two picks have different workloads or needs of the same name.
+    #[error(
+        "this file and an earlier one have different workloads called {name}, or picks with other needs: measure \
+         again with the same workload and --needs"
+    )]
+    OtherWorkload { name: String },
     /// Two documents have the same samples, which do not count twice.
     #[error("this file and an earlier one have the same samples of {mesh}: leave one out")]
     Copy { mesh: String },
@@ -92,24 +100,34 @@ impl Results {
         Ok(())
     }
 
-    /// Returns an error if a study of `other` does not repeat the study of the same mesh in `self`: it has other
-    /// settings than the seed and the budget, is of another mesh with the same name, or is a copy.
+    /// Returns an error if a finding of `other` does not repeat that of the same command and meshes in `self`: it has
+    /// other settings than the seed and the budget, is of another mesh with the same name, or is a copy.
     ///
     /// # Errors
     ///
     /// Returns [`MergeError`] in these cases.
     pub fn check_repeats(&self, other: &Self) -> Result<(), MergeError> {
-        for theirs in other.studies() {
-            let mut ours = self.studies();
-            let Some(ours) = ours.find(|ours| ours.mesh.name == theirs.mesh.name) else {
+        for theirs in &other.findings {
+            let mut ours = self.findings.iter();
+            let Some(ours) = ours.find(|ours| ours.repeats(theirs)) else {
                 continue;
             };
-            let mesh = theirs.mesh.name.clone();
-            if ours.mesh.sha256 != theirs.mesh.sha256 {
+            let names: Vec<&str> = ours.meshes().iter().map(|mesh| &*mesh.name).collect();
+            let mesh = names.join(", ");
+            let mut meshes = ours.meshes().iter().zip(theirs.meshes());
+            if meshes.any(|(ours, theirs)| ours.sha256 != theirs.sha256) {
                 return Err(MergeError::OtherMesh { mesh });
             }
-            ours.run.check_repeats(&theirs.run)?;
-            if !ours.samples.is_empty() && ours.samples == theirs.samples {
+            ours.run().check_repeats(theirs.run())?;
+            if let (Finding::Pick(ours), Finding::Pick(theirs)) = (ours, theirs)
+                && (&ours.workload, &ours.needs) != (&theirs.workload, &theirs.needs)
+            {
+                return Err(MergeError::OtherWorkload {
+                    name: ours.workload.name.clone(),
+                });
+            }
+            let own = samples(ours);
+            if own.iter().any(Option::is_some) && own == samples(theirs) {
                 return Err(MergeError::Copy { mesh });
             }
         }
@@ -136,6 +154,28 @@ impl Results {
         match other.studies().map(memory).find(|theirs| *theirs != ours) {
             None => Ok(()),
             Some(theirs) => Err(MergeError::other_memory(ours, theirs)),
+        }
+    }
+}
+
+fn samples(finding: &Finding) -> Vec<Option<&Samples>> {
+    let figures = finding.figures().into_iter();
+    figures.map(|figure| figure.samples).collect()
+}
+
+impl Finding {
+    /// Returns whether this finding and `other` measured the same, so that they can be pooled as launches: studies of
+    /// one mesh, or picks for one workload on the same meshes, by their names.
+    pub fn repeats(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Study(a), Self::Study(b)) => a.mesh.name == b.mesh.name,
+            (Self::Pick(a), Self::Pick(b)) => {
+                let names = |pick: &PickReport| -> Vec<String> {
+                    pick.meshes.iter().map(|mesh| mesh.name.clone()).collect()
+                };
+                a.workload.name == b.workload.name && names(a) == names(b)
+            }
+            _ => false,
         }
     }
 }

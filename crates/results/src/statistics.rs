@@ -222,9 +222,14 @@ pub fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
 /// Returns the 97.5 % quantile of Student's distribution with `freedom` degrees of freedom; infinity for 0
 /// degrees.
 pub(crate) fn student(freedom: f64) -> f64 {
-    const QUANTILE: f64 = 0.975;
+    student_at(0.975, freedom)
+}
+
+/// Returns a quantile, from 0 to 1, of Student's distribution with `freedom` degrees of freedom; infinity for 0
+/// degrees.
+pub(crate) fn student_at(quantile: f64, freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom)
-        .map_or(f64::INFINITY, |students| students.inverse_cdf(QUANTILE))
+        .map_or(f64::INFINITY, |students| students.inverse_cdf(quantile))
 }
 
 /// Returns the ratio of the medians of two series without common rounds, and its 95 % interval: the

@@ -49,6 +49,7 @@ pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use teaching::{Explained, Explore, Lessons, Tables, Trace};
 pub(crate) use why::Why;
 
+use crate::launches::Launch;
 use crate::many::{LabSelection, Shard};
 use crate::text::sanitize;
 
@@ -273,9 +274,8 @@ pub(crate) struct Study {
     /// Measure exactly N rounds of everything, without a time limit
     #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
     pub(crate) rounds: Option<NonZeroU32>,
-    /// Measure in N fresh processes [default: by the budget, 5 for 20s]
-    #[arg(long, value_name = "N", value_parser = launches, allow_hyphen_values = true)]
-    pub(crate) launches: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     /// Seed of the random order and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -325,11 +325,24 @@ pub(crate) struct EffortArgs {
     rounds: Option<NonZeroU32>,
 }
 
+// In how many processes to measure.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct LaunchArgs {
+    /// Measure in N fresh processes [default: by the budget, 5 for 20s]
+    #[arg(long, value_name = "N", value_parser = launches, allow_hyphen_values = true)]
+    pub(crate) launches: Option<NonZeroU32>,
+}
+
 impl EffortArgs {
-    /// Returns the number of rounds, or else the time.
-    pub(crate) fn effort(self) -> Effort {
+    /// Returns the number of rounds, or else the time, of the whole command.
+    pub(crate) fn whole(self) -> Effort {
         self.rounds
             .map_or(Effort::Budget(self.budget), Effort::Rounds)
+    }
+
+    /// Returns the number of rounds, or else the time, of this process, which may be one of several launches.
+    pub(crate) fn effort(self) -> Effort {
+        Launch::current().map_or(self.whole(), |launch| launch.effort(self.whole()))
     }
 }
 

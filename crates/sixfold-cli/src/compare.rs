@@ -31,8 +31,9 @@ use sixfold_results::numbers::{duration, grouped};
 /// Maximum number of listed measurements that only one file has.
 const SHOWN: usize = 8;
 
-/// The exit code of `--fail-if-slower` if a row is slower.
+/// The exit codes of `--fail-if-slower` if a row is slower, and if none is but some cannot be told.
 const SLOWER: u8 = 1;
+const CANNOT_TELL: u8 = 3;
 
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let places = [&arguments.before, &arguments.after];
@@ -51,7 +52,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
     let settings = CompareSettings {
         relative: arguments.relative,
-        drift: arguments.noise,
+        noise: arguments.noise,
     };
     let changes = compare(&before, &after, settings).map_err(Failure::usage)?;
     let report = ListedFolder::open_if(arguments.report.as_ref())?;
@@ -80,10 +81,12 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
         done = done.and(output.finish(|writer| changes.write_json(writer)));
     }
     done?;
-    let slower = changes.count(Verdict::Slower) > 0;
-    Ok(match slower && arguments.fail_if_slower {
-        true => ExitCode::from(SLOWER),
-        false => ExitCode::SUCCESS,
+    let is_slower = changes.count(Verdict::Slower) > 0 || changes.slower_as_a_whole().is_some();
+    let is_open = changes.count(Verdict::CannotTell) > 0;
+    Ok(match arguments.fail_if_slower {
+        true if is_slower => ExitCode::from(SLOWER),
+        true if is_open => ExitCode::from(CANNOT_TELL),
+        _ => ExitCode::SUCCESS,
     })
 }
 
@@ -187,6 +190,7 @@ fn changes_table(rows: &[&Change]) -> String {
             Verdict::Faster => "faster",
             Verdict::Slower => "slower",
             Verdict::Same => "",
+            Verdict::CannotTell => "cannot tell",
         };
         let place = columns
             .iter()

@@ -98,22 +98,22 @@ impl Launch {
     }
 }
 
-/// Returns the number of launches of a command that measures `effort` on the mesh `path` with `faces` faces:
-/// `wanted`, or else as many as the budget holds.
+/// Returns the number of launches of a command that measures `effort` on the meshes `paths` with `faces` faces
+/// together: `wanted`, or else as many as the budget holds.
 ///
 /// # Errors
 ///
-/// Returns an error if the budget does not hold `wanted` launches, or if the mesh cannot be read again.
-pub(crate) fn count(
+/// Returns an error if the budget does not hold `wanted` launches, or if a mesh cannot be read again.
+pub(crate) fn count<'p>(
     wanted: Option<NonZeroU32>,
     effort: Effort,
-    path: Option<&Path>,
+    paths: impl IntoIterator<Item = &'p Path>,
     faces: usize,
 ) -> Result<u32, Failure> {
     if Launch::current().is_some() {
         return Ok(1);
     }
-    if let Some(path) = path.filter(|path| !path.is_file()) {
+    if let Some(path) = paths.into_iter().find(|path| !path.is_file()) {
         return match wanted.map_or(1, NonZeroU32::get) {
             1 => Ok(1),
             wanted => Err(Failure::usage(format!(
@@ -208,6 +208,11 @@ pub(crate) fn run(
         ))),
         None => pool_launches(documents).map_err(Failure::usage),
     }
+}
+
+/// Returns the failure of a command that was interrupted before its first launch had a result.
+pub(crate) fn interrupted_early() -> Failure {
+    Failure::usage("interrupted before the first result")
 }
 
 /// Whether a launch died.
@@ -315,8 +320,10 @@ mod tests {
         Effort::Budget(Duration::from_secs_f64(seconds))
     }
 
+    const NO_FILES: [&Path; 0] = [];
+
     fn by_default(budget_s: f64, faces: usize) -> u32 {
-        count(None, seconds(budget_s), None, faces).expect("no number was given")
+        count(None, seconds(budget_s), NO_FILES, faces).expect("no number was given")
     }
 
     #[test]
@@ -335,12 +342,12 @@ mod tests {
             [1, 3, 5]
         );
         let rounds = Effort::Rounds(NonZeroU32::new(8).expect("above 0"));
-        assert_eq!(count(None, rounds, None, 1000).ok(), Some(1));
+        assert_eq!(count(None, rounds, NO_FILES, 1000).ok(), Some(1));
     }
 
     #[test]
     fn a_budget_holds_a_limited_number_of_launches() {
-        let wanted = |n| count(NonZeroU32::new(n), seconds(2.0), None, 1000);
+        let wanted = |n| count(NonZeroU32::new(n), seconds(2.0), NO_FILES, 1000);
         assert_eq!(wanted(4).ok(), Some(4));
         let refused = wanted(5).expect_err("too many");
         assert_eq!(refused.code, 2);
@@ -351,7 +358,7 @@ mod tests {
         );
         let rounds = Effort::Rounds(NonZeroU32::MIN);
         assert_eq!(
-            count(NonZeroU32::new(500), rounds, None, 1000).ok(),
+            count(NonZeroU32::new(500), rounds, NO_FILES, 1000).ok(),
             Some(500)
         );
     }

@@ -229,7 +229,7 @@ impl FolderRun<'_> {
         };
         let faces = study_mesh.polygons.face_count();
         let launches = match launches::count(
-            self.arguments.launches,
+            self.arguments.launching.launches,
             self.settings.effort,
             mesh.path.as_deref(),
             faces,

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
-use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
+use sixfold_results::{BreakEven, Finding, OwnBytes, OwnData, PickReport, Ranked};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
@@ -13,6 +13,7 @@ use sixfold_study::{
 use crate::arguments::{Pick, ReadFiles};
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
+use crate::launches::{self, Launch};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -37,6 +38,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
     let study_meshes: Vec<StudyMesh> = drawn.collect();
+    let launch = Launch::current();
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
@@ -44,16 +46,24 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         needs: arguments.needs.clone(),
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
-        seed: arguments.seed,
+        seed: launch.map_or(arguments.seed, |launch| launch.seed(arguments.seed)),
         heap: arguments.heap,
     };
+    let count = launches::count(
+        arguments.launching.launches,
+        settings.effort,
+        meshes.iter().filter_map(|mesh| mesh.path.as_deref()),
+        study_meshes
+            .iter()
+            .map(|mesh| mesh.polygons.face_count())
+            .sum(),
+    )?;
     warn_of_debug_build();
     print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
     let bar = Bar::new();
-    let mut show = |done: f64, what: &str| bar.set(done, what);
-    let report = sixfold_study::pick(&study_meshes, &settings, &session.stop, &mut show);
+    let report = measure(&study_meshes, &settings, count, &session.stop, &bar);
     bar.clear();
-    let report = report.map_err(Failure::usage)?;
+    let report = report?;
     print(&report, &mut session.text);
     let none_qualifies = report.ranking.is_empty() && !report.interrupted;
     let code = session.finish(with_command(report, arguments.triangulate).into())?;
@@ -67,8 +77,42 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     Ok(code)
 }
 
+/// Measures the workload on each mesh, in this process or in several launches.
+fn measure(
+    study_meshes: &[StudyMesh],
+    settings: &PickSettings,
+    launches: u32,
+    stop: &AtomicBool,
+    bar: &Bar,
+) -> Result<PickReport, Failure> {
+    if launches == 1 {
+        let mut show = |done: f64, what: &str| bar.set(done, what);
+        let report = sixfold_study::pick(study_meshes, settings, stop, &mut show);
+        return report.map_err(Failure::usage);
+    }
+    let show = |done: f64, what: &str| bar.set(done, what);
+    let results = launches::run(launches, settings.effort, None, stop, &show)?;
+    let mut picks = results
+        .findings
+        .into_iter()
+        .filter_map(|finding| match finding {
+            Finding::Pick(report) => Some(*report),
+            _ => None,
+        });
+    let mut report = picks.next().ok_or_else(launches::interrupted_early)?;
+    report.run.settings.budget_s = settings.effort.run_settings().budget_s;
+    report.meshes = study_meshes.iter().map(StudyMesh::report).collect();
+    report.interrupted |= stop.load(Ordering::Relaxed);
+    Ok(report)
+}
+
 /// Ranks the structures for the calls of a trace.
 fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
+    if arguments.launching.launches.is_some() {
+        return Err(Failure::usage(
+            "a trace is measured in one launch: leave --launches out",
+        ));
+    }
     let shown = path.display().to_string();
     let cannot_read = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
     let file = std::fs::File::open(path).map_err(cannot_read)?;

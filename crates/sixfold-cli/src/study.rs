@@ -72,7 +72,7 @@ fn run_single(
     warn_of_debug_build();
     print_before_measuring(&study_mesh, settings, &mut session.text);
     let faces = study_mesh.polygons.face_count();
-    let count = launches::count(arguments.launches, settings.effort, mesh, faces)?;
+    let count = launches::count(arguments.launching.launches, settings.effort, mesh, faces)?;
     let bar = Bar::new();
     let measured = measure(
         &study_mesh,
@@ -130,7 +130,7 @@ pub(crate) fn measure(
             Finding::Study(report) => Some(*report),
             _ => None,
         });
-    let mut report = report.ok_or_else(|| Failure::usage("interrupted before the first result"))?;
+    let mut report = report.ok_or_else(launches::interrupted_early)?;
     report.run.settings.budget_s = settings.run_settings().budget_s;
     report.mesh = study_mesh.report();
     // An interruption between two launches is in none of them.

@@ -34,11 +34,28 @@ fn two_studies() -> Sixfold {
     sixfold
 }
 
-/// Replaces all samples by nine known ones, from 2 % below to 2 % above the time of the backend.
+/// The times of eight launches, relative to that of the study. Their product is 1.
+const LAUNCHES: [f64; 8] = [
+    1.0,
+    1.01,
+    1.0 / 1.01,
+    1.005,
+    1.0,
+    1.0 / 1.005,
+    1.002,
+    1.0 / 1.002,
+];
+
+/// Replaces all samples by nine known ones, from 2 % below to 2 % above the time of the backend, and all launches by
+/// known ones, which differ from row to row.
 fn set_times(finding: &mut Value, ns_of: impl Fn(&str) -> f64) {
     finding["control"] = Value::Null;
-    for row in finding["results"].as_array_mut().expect("rows") {
-        row["median_ns"] = ns_of(row["backend"].as_str().expect("a name")).into();
+    let rows = finding["results"].as_array_mut().expect("rows");
+    for (number, row) in rows.iter_mut().enumerate() {
+        let ns = ns_of(row["backend"].as_str().expect("a name"));
+        row["median_ns"] = ns.into();
+        let launches = (0..8).map(|launch| ns * LAUNCHES[(launch + number) % 8]);
+        row["launch_ns"] = launches.collect();
     }
     for raw in finding["samples"].as_array_mut().expect("samples") {
         let ns = ns_of(raw["backend"].as_str().expect("a name"));
@@ -87,6 +104,17 @@ fn a_change_is_shown_and_can_set_the_exit_code() {
         &sixfold,
         &["compare", "b.json", "a.json", "--fail-if-slower"],
     );
+    // One launch cannot tell, so nothing is known to be slower, and the check did not pass.
+    let mut one: Value = serde_json::from_str(&text(&sixfold, "a.json")).expect("JSON");
+    for row in one["findings"][0]["results"].as_array_mut().expect("rows") {
+        row["launch_ns"] = Value::Array(Vec::new());
+    }
+    sixfold.file("one.json", &one.to_string());
+    let cannot = sixfold.run(&["compare", "a.json", "one.json", "--fail-if-slower"]);
+    assert_eq!(cannot.code, Some(3), "{cannot:?}");
+    assert!(cannot.stdout.contains("12 cannot be told"), "{cannot:?}");
+    assert!(cannot.stdout.contains("--launches 3"), "{cannot:?}");
+    run_ok(&sixfold, &["compare", "a.json", "one.json"]);
     let piped = run_ok(&sixfold, &["compare", "a.json", "b.json", "--json", "-"]);
     serde_json::from_str::<Value>(&piped.stdout).expect("JSON alone");
 }
@@ -256,7 +284,7 @@ fn a_report_shows_the_changes_and_keeps_the_exit_code() {
     let page = text(&sixfold, "changes/report.md");
     for part in [
         "# What changed: a.json → b.json",
-        "of 12 times, 2 are slower and 0 are faster; 10 are equal within the noise",
+        "of 12 times, 2 are slower and 0 are faster; 10 are equal and",
         "on half-edge, 2.00 × the time before (1.00 µs → 2.00 µs)",
         "0123456",
         "](figures/changes.svg)",
@@ -282,7 +310,7 @@ fn a_report_shows_the_changes_and_keeps_the_exit_code() {
             .exists()
     );
     assert_eq!(text(&sixfold, "changes/figures/mine.svg"), "mine");
-    assert!(text(&sixfold, "changes/report.md").contains("Nothing changed beyond the noise"));
+    assert!(text(&sixfold, "changes/report.md").contains("No change found"));
 
     let figures = ["compare", "a.json", "b.json", "--figures", "paper"];
     assert_eq!(run_ok(&sixfold, &figures).stdout, plain);

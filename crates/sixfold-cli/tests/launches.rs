@@ -98,6 +98,84 @@ fn a_study_of_three_launches_has_three_values_of_each_time() {
 }
 
 #[test]
+fn a_pick_of_three_launches_ranks_by_their_times() {
+    let sixfold = with_grid();
+    sixfold.grid("other.obj", 9);
+    let pick = |meshes: &[&str], more: &[&str]| {
+        let options = [
+            "--rounds",
+            "2",
+            "--workload",
+            "smoothing",
+            "--launches",
+            "3",
+        ];
+        let arguments = [&["pick"], meshes, &options, more].concat();
+        run_ok(&sixfold, &arguments)
+    };
+    let run = pick(&["grid.obj"], &["--json", "one.json"]);
+    assert!(run.stdout.contains("For smoothing, "), "{run:?}");
+    let one = document(&sixfold, "one.json");
+    assert_eq!(one["findings"].as_array().map(Vec::len), Some(1));
+    let finding = &one["findings"][0];
+    let counts = |ranking: &Value| -> Vec<usize> {
+        let rows = ranking.as_array().expect("rows").iter();
+        rows.map(|row| row["launch_ns"].as_array().expect("launches").len())
+            .collect()
+    };
+    let backends = counts(&finding["ranking"]).len();
+    assert!(backends >= 6, "{finding}");
+    assert_eq!(counts(&finding["ranking"]), vec![3; backends]);
+    for row in finding["ranking"].as_array().expect("rows") {
+        assert!(row["ns_ci_low"].is_f64() && row["build_launch_ns"].as_array().is_some());
+        assert_eq!(row["samples"], 6);
+        let parts = row["parts"].as_array().expect("parts");
+        assert!(
+            parts
+                .iter()
+                .all(|part| part["launch_ns"].as_array().map(Vec::len) == Some(3))
+        );
+    }
+    assert_eq!(finding["control_ratios"].as_array().map(Vec::len), Some(3));
+    assert!(!finding["break_even"].as_array().expect("rows").is_empty());
+    assert_eq!(one["runs"][0]["settings"]["launches"], 3);
+    assert!(one["meshes"][0]["picture"].is_string());
+    // On several meshes, each has its launches.
+    pick(&["grid.obj", "other.obj"], &["--json", "two.json"]);
+    let two = document(&sixfold, "two.json");
+    let by_mesh = two["findings"][0]["by_mesh"]
+        .as_array()
+        .expect("two meshes");
+    assert_eq!(by_mesh.len(), 2);
+    for of_mesh in by_mesh {
+        assert_eq!(counts(&of_mesh["ranking"]), vec![3; backends]);
+        assert!(of_mesh["operations"].as_f64() > Some(1.0));
+    }
+    // Launches of the same pick are pooled, those of another workload are not.
+    pick(&["grid.obj"], &["--seed", "9", "--json", "again.json"]);
+    run_ok(
+        &sixfold,
+        &[
+            "merge",
+            "--repeat",
+            "one.json",
+            "again.json",
+            "--json",
+            "all.json",
+        ],
+    );
+    let all = document(&sixfold, "all.json");
+    assert_eq!(counts(&all["findings"][0]["ranking"]), vec![6; backends]);
+    assert_eq!(all["runs"][0]["settings"]["launches"], 6);
+    let copy = [
+        "merge", "--repeat", "one.json", "one.json", "--json", "no.json",
+    ];
+    let copy = sixfold.run(&copy);
+    assert_eq!(copy.code, Some(2), "{copy:?}");
+    assert!(copy.stderr.contains("same samples"), "{copy:?}");
+}
+
+#[test]
 fn the_results_on_standard_output_are_those_of_all_launches() {
     let sixfold = with_grid();
     let run = run_ok(

@@ -42,7 +42,15 @@ fn written_fields() -> BTreeSet<String> {
         &["why", "grid.obj", "--rounds", "2"],
         &["memory", "grid.obj"],
         &["neighbours", "grid.obj", "--rounds", "2"],
-        &["pick", "grid.obj", "t.obj", "--rounds", "2"],
+        &[
+            "pick",
+            "grid.obj",
+            "t.obj",
+            "--rounds",
+            "2",
+            "--launches",
+            "2",
+        ],
     ];
     let mut merge = vec!["merge".to_owned()];
     for (i, command) in commands.iter().enumerate() {

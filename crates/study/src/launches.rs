@@ -4,6 +4,7 @@ use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Results, Timer};
 use sixfold_workload::{Backend, Operation};
 
+use crate::labs::pick::pool_picks;
 use crate::labs::study::conclude;
 
 /// The environment variable that tells a process of the command `sixfold` that it is a launch. External programs,
@@ -13,7 +14,7 @@ pub const LAUNCH_VARIABLE: &str = "SIXFOLD_LAUNCH";
 /// Pools documents of the same work, one for each launch, as one document. Documents that were pooled before
 /// add all of their launches.
 ///
-/// Studies of the same mesh become one study, see
+/// Studies of the same mesh become one study, and picks for the same workload one pick, see
 /// [`pool_rows`](sixfold_results::launches::pool_rows()). A mesh that failed in some launches has a study
 /// of the others.
 ///
@@ -27,27 +28,39 @@ pub fn pool_launches(launches: Vec<Results>) -> Result<Results, MergeError> {
             .try_for_each(|earlier| earlier.check_repeats(launch))?;
     }
     let mut pooled = Results::default();
-    let mut studies: Vec<Vec<Report>> = Vec::new();
+    let mut groups: Vec<Vec<Finding>> = Vec::new();
     let mut failures = Vec::new();
     for launch in launches {
         pooled.plan(launch.planned);
         pooled.add_notices(launch.notices);
         failures.extend(launch.failures);
         for finding in launch.findings {
-            let Finding::Study(study) = finding else {
-                pooled.add(finding);
-                continue;
-            };
-            let same = |group: &&mut Vec<Report>| group[0].mesh.name == study.mesh.name;
-            match studies.iter_mut().find(same) {
-                Some(group) => group.push(*study),
-                None => studies.push(vec![*study]),
+            match groups.iter_mut().find(|group| group[0].repeats(&finding)) {
+                Some(group) => group.push(finding),
+                None => groups.push(vec![finding]),
             }
         }
     }
-    pooled.extend(studies.into_iter().map(|group| pool_studies(group).into()));
+    pooled.extend(groups.into_iter().filter_map(pool_group));
     pooled.add_failures(failures);
     Ok(pooled)
+}
+
+/// Pools findings that repeat each other.
+fn pool_group(group: Vec<Finding>) -> Option<Finding> {
+    let (mut studies, mut picks) = (Vec::new(), Vec::new());
+    for finding in group {
+        match finding {
+            Finding::Study(study) => studies.push(*study),
+            Finding::Pick(pick) => picks.push(*pick),
+            other => return Some(other),
+        }
+    }
+    match (studies.is_empty(), picks.is_empty()) {
+        (false, _) => Some(pool_studies(studies).into()),
+        (true, false) => Some(pool_picks(picks).into()),
+        (true, true) => None,
+    }
 }
 
 /// Pools the studies of one mesh.

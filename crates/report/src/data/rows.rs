@@ -224,7 +224,7 @@ struct ChangeRow<'r> {
     ratio: f64,
     ci_low: Option<f64>,
     ci_high: Option<f64>,
-    noise: f64,
+    detectable: Option<f64>,
     verdict: Verdict,
     other_checksum: bool,
 }
@@ -244,7 +244,7 @@ pub(crate) fn changes<'c>(changes: impl Iterator<Item = &'c Change>) -> String {
         ratio: change.ratio,
         ci_low: change.ci_low,
         ci_high: change.ci_high,
-        noise: change.noise,
+        detectable: change.detectable,
         verdict: change.verdict,
         other_checksum: change.other_checksum,
     });

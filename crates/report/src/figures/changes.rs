@@ -1,4 +1,4 @@
-//! The figure of the changes beyond the noise: a row for each time, the largest change first.
+//! The figure of the changes beyond chance: a row for each time, the largest change first.
 
 use sixfold_results::Change;
 use sixfold_results::numbers::{counted, grouped, times};
@@ -49,14 +49,14 @@ pub(crate) fn figure(
     let first = shown.first().filter(|row| !row.other_checksum)?;
     let changed = all.iter().filter(|row| !row.other_checksum).count();
     let picture_label = format!(
-        "{} beyond the noise, the largest first: {}, {}",
+        "{} beyond chance, the largest first: {}, {}",
         counted(changed, "change", "changes"),
         ranked.name(&first.measurement),
         times(ranked.value(first))
     );
     Some(Figure {
         id: "changes".into(),
-        title: "Changes beyond the noise, largest first".into(),
+        title: "Changes beyond chance, largest first".into(),
         caption: caption(ranked, &all, both),
         picture: Picture::single(&picture_label, scene(ranked, &rows)),
         table: ranked.times_table(all.iter().copied().take(TABLE_ROWS)),
@@ -153,20 +153,14 @@ fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Canvas {
     let width = text_from + widest(texts.chain([TEXTS]));
     let bottom = HEAD + ROW * rows.len() as f64;
     let mut canvas = Canvas::new(width, bottom + FOOT);
+    let noise = ranked.changes.noise;
     let ends = rows.iter().flat_map(|row| {
         let ends = ranked.interval(row.change).into_iter().flatten();
-        ends.chain([ranked.value(row.change), row.change.noise])
+        ends.chain([ranked.value(row.change), noise])
     });
     let scale = ratio_axis::scale(ends, [left, left + PLOT]);
-    let mut top = HEAD;
-    // Rows with the same noise have one band.
-    for band in rows.chunk_by(|a, b| a.change.noise == b.change.noise) {
-        let noise = band[0].change.noise;
-        let [from, to] = [noise.recip(), noise].map(|end| scale.place(end));
-        let height = ROW * band.len() as f64;
-        canvas.rect([from, top], [to - from, height], GRID_COLOUR);
-        top += height;
-    }
+    let [from, to] = [noise.recip(), noise].map(|end| scale.place(end));
+    canvas.rect([from, HEAD], [to - from, bottom - HEAD], GRID_COLOUR);
     ratio_axis::draw(&mut canvas, scale, [HEAD, bottom]);
     let heading = Style::new(11).colour(FAINT_COLOUR);
     canvas.text([text_from, HEAD - 6.0], TEXTS, heading);

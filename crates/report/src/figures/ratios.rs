@@ -85,11 +85,10 @@ pub(crate) fn figure(
         title: title.into(),
         caption: format!(
             "{dots}: the time in {} divided by the time in {}{relative}, on a logarithmic axis. Upright lines are medians. \
-             The grey band is the noise of all times, up to {}; single times can have more. Times of different work are \
-             left out.",
+             Ratios in the grey band, up to {}, count as equal. Times of different work are left out.",
             after.name,
             before.name,
-            times(ranked.changes.drift)
+            times(ranked.changes.noise)
         ),
         picture: Picture::single(
             &format!("{title}: {}", counted(count, "ratio", "ratios")),
@@ -139,10 +138,10 @@ fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>], has_dots: bool) -> Canvas {
     let width = text_from + widest(texts.iter().map(String::as_str));
     let bottom = HEAD + LINE * lines.len() as f64;
     let mut canvas = Canvas::new(width, bottom + FOOT);
-    let drift = ranked.changes.drift;
+    let noise = ranked.changes.noise;
     let values = lines.iter().flat_map(|line| line.values.iter().copied());
-    let scale = ratio_axis::scale(values.chain([drift]), [left, left + PLOT]);
-    let [from, to] = [drift.recip(), drift].map(|end| scale.place(end));
+    let scale = ratio_axis::scale(values.chain([noise]), [left, left + PLOT]);
+    let [from, to] = [noise.recip(), noise].map(|end| scale.place(end));
     canvas.rect([from, HEAD], [to - from, bottom - HEAD], GRID_COLOUR);
     ratio_axis::draw(&mut canvas, scale, [HEAD, bottom]);
     for (number, line) in lines.iter().enumerate() {

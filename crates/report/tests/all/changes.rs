@@ -12,7 +12,7 @@ use sixfold_results::{
 use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 
 const COMMAND: &str = "sixfold compare a.json b.json --report changes";
-const DRIFT: f64 = 1.2;
+const NOISE: f64 = 1.2;
 const MARKUP: &str = "<script>alert('a|b')</script>&";
 
 /// Returns a time of 1,000 ns before and `ratio` times this after, with an interval of 10 %.
@@ -32,10 +32,10 @@ fn change(operation: &str, backend: &str, ratio: f64) -> Change {
         ratio,
         ci_low: Some(ratio * 0.9),
         ci_high: Some(ratio * 1.1),
-        noise: DRIFT,
+        detectable: Some(1.08),
         verdict: match ratio {
-            r if r > DRIFT => Verdict::Slower,
-            r if r < DRIFT.recip() => Verdict::Faster,
+            r if r > NOISE => Verdict::Slower,
+            r if r < NOISE.recip() => Verdict::Faster,
             _ => Verdict::Same,
         },
         other_checksum: false,
@@ -64,7 +64,7 @@ fn changes(rows: Vec<Change>) -> Changes {
         environment: Vec::new(),
         overall: (!rows.is_empty()).then_some(1.0),
         relative: false,
-        drift: DRIFT,
+        noise: NOISE,
         rows,
         bytes: Vec::new(),
         winners: Vec::new(),
@@ -146,13 +146,12 @@ fn interval(shapes: &str) -> Option<[f64; 2]> {
 
 #[test]
 fn marks_are_those_of_the_changes_largest_first() {
-    let mut changes = changes(vec![
+    let changes = changes(vec![
         change("boundary", "half-edge", 1.5),
         change("boundary", "corner-table", 1.1),
         change("build", "half-edge", 0.25),
         without_interval(change("build", "face-vertex", 2.5)),
     ]);
-    changes.rows[3].noise = 1.4;
     let page = page(&changes);
     let figure = figure(&page, "changes");
     let marks = marks(figure);
@@ -195,31 +194,30 @@ fn marks_are_those_of_the_changes_largest_first() {
         }
     }
     assert!(rows.is_sorted(), "{rows:?}");
-    // The band of noise of each row.
+    // The band of ratios that count as equal.
     let svg = figure.picture.svg();
     let bands = svg.split("<rect ").map(|rect| format!("<rect {rect}"));
     let bands =
-        bands.filter(|rect| rect.contains("fill=\"#dcdcda\"") && rect.contains("height=\"20\""));
+        bands.filter(|rect| rect.contains("fill=\"#dcdcda\"") && rect.contains("height=\"60\""));
     let bands: Vec<String> = bands.collect();
-    assert_eq!(bands.len(), 3);
-    for (band, noise) in bands.iter().zip([DRIFT, 1.4, DRIFT]) {
-        let [x, width] =
-            ["x", "width"].map(|name| attribute(band, "rect", name).expect("a number"));
-        assert!((x - place(noise.recip())).abs() < 0.1, "{x}");
-        assert!((x + width - place(noise)).abs() < 0.1, "{width}");
-    }
+    let [band] = &bands[..] else {
+        panic!("{bands:?}")
+    };
+    let [x, width] = ["x", "width"].map(|name| attribute(band, "rect", name).expect("a number"));
+    assert!((x - place(NOISE.recip())).abs() < 0.1, "{x}");
+    assert!((x + width - place(NOISE)).abs() < 0.1, "{width}");
     assert!(svg.contains(">← faster<") && svg.contains(">slower →<"));
     assert!(svg.contains(">0.250 ×, 1.00 µs → 250 ns<"), "{svg}");
     assert!(figure.caption.contains("open ring"), "{}", figure.caption);
     // The data have one row for each mark.
     assert_eq!(figure.csv.lines().count(), 1 + 3);
     let first =
-        "ball.obj,study,,build,half-edge,1000.0,250.0,9,8,0.25,0.225,0.275,1.2,faster,false";
+        "ball.obj,study,,build,half-edge,1000.0,250.0,9,8,0.25,0.225,0.275,1.08,faster,false";
     assert_eq!(figure.csv.lines().nth(1), Some(first));
     assert_eq!(
         page.answer,
         [
-            "Changes beyond the noise: of 4 times, 2 are slower and 1 is faster; 1 is equal within the noise.",
+            "Changes beyond chance: of 4 times, 2 are slower and 1 is faster; 1 is equal and 0 cannot be told.",
             "Largest change: build on half-edge, 0.250 × the time before (1.00 µs → 250 ns).",
             "Overall: 1.00 × the times before (median of all ratios).",
         ]
@@ -263,7 +261,7 @@ fn nothing_changed_is_said_plainly() {
     ]));
     assert_eq!(
         page.answer[0],
-        "Nothing changed beyond the noise: of 3 times, 2 are equal within it; 1 is of different work."
+        "No change found: of 3 times, 2 are equal and 0 cannot be told; 1 is of different work."
     );
     let ids: Vec<&str> = page
         .all_figures()
@@ -524,7 +522,7 @@ fn incomplete_results_are_labelled() {
         let places = [
             "What changed:",
             "rustc 1.94",
-            "Changes beyond the noise, largest first\n",
+            "Changes beyond chance, largest first\n",
             "All compared times",
             "Bytes that differ",
             "New fastest backends",

@@ -1,7 +1,8 @@
 //! Describes the changes between two documents in sentences.
 
 use super::{Changes, Measurement, Verdict};
-use crate::numbers::counted;
+use crate::numbers::{counted, times};
+use crate::statistics::median;
 
 impl Changes {
     /// Returns sentences that describe the changes.
@@ -9,6 +10,7 @@ impl Changes {
         let mut sentences = Vec::new();
         let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
         let same = self.count(Verdict::Same);
+        let open = self.count(Verdict::CannotTell);
         if self.rows.is_empty() {
             return vec![match self.bytes.len() {
                 0 => "The files have the same counts of bytes.".into(),
@@ -23,33 +25,32 @@ impl Changes {
             }];
         }
         sentences.push(format!(
-            "Of {}, {faster} {} faster in the second file, {slower} {} slower, and {same} \
-             {} equal within the noise.",
+            "Of {}, {faster} {} faster in the second file, {slower} {} slower, {same} {} equal, and {open} cannot \
+             be told.",
             counted(self.rows.len(), "measurement", "measurements"),
             is_or_are(faster),
             is_or_are(slower),
-            is_or_are(same)
+            is_or_are(same),
         ));
-        if let Some(overall) = self.overall {
-            let factor = overall.max(overall.recip());
+        sentences.extend(self.what_would_tell());
+        if let Some(overall) = self.overall.filter(|o| o.max(o.recip()) > self.noise) {
             let machines = self.environment.iter().any(|s| s.what == "processor");
-            if factor > self.drift {
-                let hint = match (self.relative, machines) {
-                    (true, _) => ". Each ratio is divided by this median before it is judged",
-                    (false, true) => {
-                        ". The machines differ: to divide each ratio by this median, \
-                                      use --relative"
-                    }
-                    (false, false) => {
-                        ". If a machine was busy or hot, use --relative to divide each ratio by \
-                         this median"
-                    }
-                };
-                sentences.push(format!(
-                    "Overall, the second file has {overall:.2} × the times of the first (median of \
-                     all ratios){hint}."
-                ));
-            }
+            let hint = match (self.slower_as_a_whole(), self.relative, machines) {
+                (_, true, _) => "Each ratio is compared with this median.",
+                (_, false, true) => {
+                    "The machines differ: with --relative, this median does not count as slower."
+                }
+                (Some(_), ..) => {
+                    "This is more than a machine changes from study to study: the whole program is slower."
+                }
+                (None, ..) => {
+                    "The machine or the whole program may be the reason. To tell, measure both in turns, and pool \
+                     the measurements of each with `sixfold merge --repeat`."
+                }
+            };
+            sentences.push(format!(
+                "Overall, the second file has {overall:.2} × the times of the first (median of all ratios). {hint}"
+            ));
         }
         for winner in &self.winners {
             sentences.push(format!(
@@ -76,6 +77,31 @@ impl Changes {
             ));
         }
         sentences
+    }
+}
+
+impl Changes {
+    /// Says what would decide the measurements that cannot be told.
+    fn what_would_tell(&self) -> Option<String> {
+        let open = || {
+            let rows = self.rows.iter();
+            rows.filter(|row| row.verdict == Verdict::CannotTell)
+        };
+        open().next()?;
+        let once = open().filter(|row| row.detectable.is_none()).count();
+        if once > 0 {
+            return Some(format!(
+                "{} measured in one launch, which does not show how much a time varies from process to process: \
+                 measure both with --launches 3 or more, or a --budget of 6s or more.",
+                counted(once, "of them was", "of them were")
+            ));
+        }
+        let typical = median(open().filter_map(|row| row.detectable).collect())?;
+        Some(format!(
+            "In half of those that cannot be told, only a change by {} or more could be told from chance: use fewer \
+             --operations, a longer --budget, or a quieter machine.",
+            times(typical)
+        ))
     }
 }
 

@@ -7,7 +7,7 @@ use crate::environment::Cache;
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
 use crate::read::ReadError;
-use crate::rows::{BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples, noise};
+use crate::rows::{BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples};
 use crate::run::Run;
 use crate::timer::Timer;
 
@@ -104,10 +104,7 @@ impl LabFinding for GrowthReport {
                 let mut bytes = size.backend_bytes.iter();
                 bytes.find(|bytes| bytes.backend == name).map(|b| b.bytes)
             };
-            let noise = |operation: &str| noise(size.control.as_ref(), operation);
-            let mut figures = size
-                .all_rows(&self.run)
-                .figures(self.meshes.get(i), bytes, noise);
+            let mut figures = size.all_rows(&self.run).figures(self.meshes.get(i), bytes);
             for figure in &mut figures {
                 figure.elements_of_mesh = [size.vertices, size.edges, size.faces];
                 let faces = size.faces;

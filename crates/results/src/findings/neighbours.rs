@@ -88,9 +88,8 @@ impl LabFinding for NeighboursReport {
             let mut backends = self.backends.iter();
             backends.find(|index| index.name == name).map(|i| i.bytes)
         };
-        let noise = self.noise.unwrap_or(1.0);
         let mesh = Some(&self.mesh);
-        let mut figures = self.all_rows().figures(mesh, bytes, |_| noise);
+        let mut figures = self.all_rows().figures(mesh, bytes);
         for figure in &mut figures {
             figure.row.case = self.points.name().into();
         }

@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
 use crate::read::ReadError;
-use crate::rows::{
-    BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, bytes_of, noise,
-};
+use crate::rows::{BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, bytes_of};
 use crate::run::Run;
 use crate::timer::Timer;
 
@@ -71,8 +69,7 @@ impl OrdersReport {
 impl LabFinding for OrdersReport {
     fn figures(&self) -> Vec<Figure<'_>> {
         let bytes = |backend: &str| bytes_of(&self.backends, backend);
-        let noise = |operation: &str| noise(self.control.as_ref(), operation);
-        self.all_rows().figures(Some(&self.mesh), bytes, noise)
+        self.all_rows().figures(Some(&self.mesh), bytes)
     }
 
     fn check(&self) -> Result<(), ReadError> {

@@ -55,6 +55,10 @@ pub struct PickReport {
     /// The noise: one backend is measured twice, and the longer time is divided by the shorter
     /// time. `None` if no backend was measured twice.
     pub noise: Option<f64>,
+    /// The time of the second measurement divided by the time of the first, in each launch. Empty if there are
+    /// several meshes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub control_ratios: Vec<Option<f64>>,
     /// The names of the backends with wrong results. A wrong result is a fault in Sixfold.
     pub mismatches: Vec<String>,
     /// Sentences that name the fastest backend and explain the result.
@@ -178,6 +182,12 @@ pub struct MeshRanking {
     pub break_even: Vec<BreakEven>,
     /// The noise on this mesh, as in [`PickReport::noise`].
     pub noise: Option<f64>,
+    /// The ratios of the control on this mesh, as in [`PickReport::control_ratios`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub control_ratios: Vec<Option<f64>>,
+    /// The number of operations that the program performs on this mesh.
+    #[serde(default)]
+    pub operations: f64,
     /// The times of all samples on this mesh.
     pub samples: Vec<Samples>,
 }
@@ -194,8 +204,11 @@ pub struct Ranked {
     /// The median time of one operation of the workload, in nanoseconds. If the workload rebuilds
     /// the structure, this time includes a share of the rebuilding time.
     pub ns_per_operation: f64,
+    /// The time in each launch, if there are several; `None` in a launch without a time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub launch_ns: Vec<Option<f64>>,
     /// The lower end of the 95 % confidence interval of `ns_per_operation`; `None` with fewer than
-    /// three rounds.
+    /// two launches, or three rounds of the only launch.
     pub ns_ci_low: Option<f64>,
     /// The upper end of the 95 % confidence interval of `ns_per_operation`.
     pub ns_ci_high: Option<f64>,
@@ -211,6 +224,9 @@ pub struct Ranked {
     /// The time to build the backend from polygons in memory pages that were used before, in
     /// nanoseconds. For relation tables, this time includes the computation of the tables.
     pub build_ns: f64,
+    /// The value of `build_ns` in each launch, if there are several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub build_launch_ns: Vec<Option<f64>>,
     /// The time to build the backend in fresh memory pages, in nanoseconds. Use this time for a
     /// program that builds the backend only once. `None` if this time was not measured.
     pub first_build_ns: Option<f64>,
@@ -246,6 +262,9 @@ pub struct PartCost {
     /// The time of this operation, timed alone in the access order of the workload, in nanoseconds.
     /// `None` if the operation was not timed alone.
     pub ns: Option<f64>,
+    /// The value of `ns` in each launch, if there are several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub launch_ns: Vec<Option<f64>>,
     /// True if `ns` is an estimate, and so a lower bound.
     pub estimated: bool,
 }
@@ -335,25 +354,14 @@ impl LabFinding for PickReport {
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
-        let by_mesh = match (&self.by_mesh[..], &self.meshes[..]) {
-            ([], [mesh]) => vec![(mesh, &self.ranking, &self.samples, self.noise)],
-            (rankings, meshes) => rankings
-                .iter()
-                .filter_map(|of_mesh| {
-                    let mesh = meshes.iter().find(|mesh| mesh.name == of_mesh.mesh)?;
-                    Some((mesh, &of_mesh.ranking, &of_mesh.samples, of_mesh.noise))
-                })
-                .collect(),
-        };
-        by_mesh
-            .into_iter()
-            .flat_map(|(mesh, ranking, samples, noise)| {
-                let noise = noise.unwrap_or(1.0);
-                ranking
-                    .iter()
-                    .flat_map(move |ranked| self.figures_of(mesh, ranked, samples, noise))
+        let figures = self.on_meshes().into_iter().flat_map(|on_mesh| {
+            let of_each = on_mesh.ranking.iter();
+            of_each.flat_map(move |ranked| {
+                let rows = self.rows_of(ranked).into_iter();
+                rows.map(move |row| on_mesh.figure(ranked, row))
             })
-            .collect()
+        });
+        figures.collect()
     }
 
     fn check(&self) -> Result<(), ReadError> {
@@ -362,6 +370,41 @@ impl LabFinding for PickReport {
         by_mesh
             .map(|of_mesh| &of_mesh.samples)
             .try_for_each(|samples| check_samples(samples))
+    }
+}
+
+/// The results of a pick on one of its meshes.
+#[derive(Clone, Copy, Debug)]
+pub struct OnMesh<'r> {
+    /// The mesh.
+    pub mesh: &'r MeshReport,
+    /// The backends, the fastest first.
+    pub ranking: &'r [Ranked],
+    /// The times of all samples.
+    pub samples: &'r [Samples],
+    /// The ratio of the two measurements of one backend in each launch.
+    pub control_ratios: &'r [Option<f64>],
+    /// The number of operations that the program performs.
+    pub operations: f64,
+}
+
+impl<'r> OnMesh<'r> {
+    fn figure(&self, ranked: &'r Ranked, row: ResultRow) -> Figure<'r> {
+        let samples = samples_of(self.samples, "", &row.operation, &row.backend);
+        let count = samples.map_or(0, |samples| samples.rounds.len());
+        let status = match (row.estimated_ns, row.sampled) {
+            (Some(_), _) => Status::Estimated,
+            (None, true) => Status::Sampled,
+            (None, false) => Status::Measured,
+        };
+        let row = ResultRow {
+            samples: row.samples.max(count),
+            ..row
+        };
+        Figure {
+            samples,
+            ..Figure::new(Some(self.mesh), Some(ranked.bytes), status, row)
+        }
     }
 }
 
@@ -374,49 +417,58 @@ impl PickReport {
         }
     }
 
-    /// Returns the times of the mix, of its parts, and of building.
-    fn figures_of<'r>(
-        &'r self,
-        mesh: &'r MeshReport,
-        ranked: &'r Ranked,
-        samples: &'r [Samples],
-        noise: f64,
-    ) -> Vec<Figure<'r>> {
-        let row = |operation: &str, unit: &str, ns: f64, estimated: bool| ResultRow {
-            case: self.workload.name.clone(),
-            backend: ranked.backend.clone(),
-            operation: operation.to_owned(),
-            median_ns: (!estimated).then_some(ns),
-            ns_per_element: (!estimated).then_some(ns),
-            estimated_ns: estimated.then_some(ns),
-            elements: Some(1),
-            per: unit.to_owned(),
-            sampled: ranked.sampled,
-            ..ResultRow::default()
-        };
-        let figure = |row: ResultRow| {
-            let samples = samples_of(samples, "", &row.operation, &row.backend);
-            let count = samples.map_or(0, |samples| samples.rounds.len());
-            let status = match (row.estimated_ns, row.sampled) {
-                (Some(_), _) => Status::Estimated,
-                (None, true) => Status::Sampled,
-                (None, false) => Status::Measured,
+    /// Returns the name of the operation that stands for the whole mix or run in figures and samples.
+    pub fn whole(&self) -> &'static str {
+        match self.program {
+            Some(_) => RUN,
+            None => MIX,
+        }
+    }
+
+    /// Returns the results on each mesh.
+    pub fn on_meshes(&self) -> Vec<OnMesh<'_>> {
+        if let ([], [mesh]) = (&self.by_mesh[..], &self.meshes[..]) {
+            return vec![OnMesh {
+                mesh,
+                ranking: &self.ranking,
+                samples: &self.samples,
+                control_ratios: &self.control_ratios,
+                operations: self.operations,
+            }];
+        }
+        let on_meshes = self.by_mesh.iter().filter_map(|of_mesh| {
+            Some(OnMesh {
+                mesh: self.meshes.iter().find(|mesh| mesh.name == of_mesh.mesh)?,
+                ranking: &of_mesh.ranking,
+                samples: &of_mesh.samples,
+                control_ratios: &of_mesh.control_ratios,
+                operations: of_mesh.operations,
+            })
+        });
+        on_meshes.collect()
+    }
+
+    /// Returns the times of a backend as rows: of the mix, of its parts, and of building.
+    pub fn rows_of(&self, ranked: &Ranked) -> Vec<ResultRow> {
+        let unit = self.unit();
+        let row =
+            |operation: &str, unit: &str, ns: f64, estimated: bool, launches: &[Option<f64>]| {
+                ResultRow {
+                    case: self.workload.name.clone(),
+                    backend: ranked.backend.clone(),
+                    operation: operation.to_owned(),
+                    median_ns: (!estimated).then_some(ns),
+                    ns_per_element: (!estimated).then_some(ns),
+                    launch_ns: launches.to_vec(),
+                    estimated_ns: estimated.then_some(ns),
+                    elements: Some(1),
+                    per: unit.to_owned(),
+                    sampled: ranked.sampled,
+                    ..ResultRow::default()
+                }
             };
-            let row = ResultRow {
-                samples: row.samples.max(count),
-                ..row
-            };
-            Figure {
-                samples,
-                noise,
-                ..Figure::new(Some(mesh), Some(ranked.bytes), status, row)
-            }
-        };
-        let (whole, unit) = match self.program {
-            Some(_) => (RUN, "run"),
-            None => (MIX, "operation"),
-        };
-        let mut figures = vec![figure(ResultRow {
+        let whole = ranked.ns_per_operation;
+        let mut rows = vec![ResultRow {
             ci_low_ns: ranked.ns_ci_low,
             ci_high_ns: ranked.ns_ci_high,
             ratio_to_best: (!ranked.estimated).then_some(ranked.ratio_to_best),
@@ -424,14 +476,32 @@ impl PickReport {
             ratio_ci_high: ranked.ci_high,
             faults: ranked.faults,
             samples: ranked.samples,
-            ..row(whole, unit, ranked.ns_per_operation, ranked.estimated)
-        })];
-        for part in &ranked.parts {
-            let row = |ns| row(&part.operation, "operation", ns, part.estimated);
-            figures.extend(part.ns.map(|ns| figure(row(ns))));
-        }
-        figures.push(figure(row("build", "mesh", ranked.build_ns, false)));
-        figures
+            ..row(
+                self.whole(),
+                unit,
+                whole,
+                ranked.estimated,
+                &ranked.launch_ns,
+            )
+        }];
+        rows.extend(ranked.parts.iter().filter_map(|part| {
+            let (ns, launches) = (part.ns?, &part.launch_ns);
+            Some(row(
+                &part.operation,
+                "operation",
+                ns,
+                part.estimated,
+                launches,
+            ))
+        }));
+        rows.push(row(
+            "build",
+            "mesh",
+            ranked.build_ns,
+            false,
+            &ranked.build_launch_ns,
+        ));
+        rows
     }
 }
 

@@ -11,7 +11,7 @@ use crate::pool::{Overall, overall};
 use crate::read::ReadError;
 use crate::rows::{
     Agreement, BackendReport, Control, ControlRow, MeshReport, Refusal, ResultRow, Samples,
-    Standing, bytes_of, noise,
+    Standing, bytes_of,
 };
 use crate::run::Run;
 use crate::timer::Timer;
@@ -169,8 +169,7 @@ impl LabFinding for Report {
 
     fn figures(&self) -> Vec<Figure<'_>> {
         let bytes = |backend: &str| bytes_of(&self.backends, backend);
-        let noise = |operation: &str| noise(self.control.as_ref(), operation);
-        self.all_rows().figures(Some(&self.mesh), bytes, noise)
+        self.all_rows().figures(Some(&self.mesh), bytes)
     }
 
     fn check(&self) -> Result<(), ReadError> {

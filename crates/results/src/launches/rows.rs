@@ -1,6 +1,6 @@
 //! Pools the rows of several launches: what each launch measured becomes one value of a row.
 
-use super::{ratio_over_launches, time_over_launches, times_over_launches};
+use super::{FEWEST_LAUNCHES, ratio_over_launches, time_over_launches, times_over_launches};
 use crate::ranking::{Rank, rank_launches};
 use crate::rows::{
     Agreement, Control, ControlRow, Refusal, RefusalKind, ResultRow, Samples, noise,
@@ -102,8 +102,13 @@ fn pool_group(
     let values: Vec<Vec<Option<f64>>> = rows
         .iter()
         .map(|row| {
+            // A single run before the rounds, with cold caches, counts only if there is nothing better.
+            let in_rounds = |row: &&ResultRow| row.median_ns.is_some() && !row.warm_up_only;
+            let is_enough =
+                row.iter().flatten().filter(|row| in_rounds(row)).count() >= FEWEST_LAUNCHES;
             let of = row.iter().zip(counts);
-            of.flat_map(|(row, &count)| values(*row, count)).collect()
+            let of = of.map(|(row, count)| (row.filter(|row| !is_enough || in_rounds(row)), count));
+            of.flat_map(|(row, &count)| values(row, count)).collect()
         })
         .collect();
     let values: Vec<&[Option<f64>]> = values.iter().map(Vec::as_slice).collect();

@@ -61,25 +61,20 @@ pub(crate) struct Orders {
 
 const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json
-  sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
+  sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1 or 3
   sixfold compare laptop.json server.json --relative
   sixfold compare before.json after.json --report changes      a page with figures
 
 Each file has results of any commands that measure. A measurement is the time of one operation on
 one backend, by the same command, on the same mesh and in the same case (order, size or workload).
-The ratio of a measurement is the median time in the second file, divided by the median time in the
-first file. A measurement counts as slower if three conditions hold:
-  - The 95 % interval of the ratio lies above 1.
-  - The ratio is above --noise.
-  - The ratio is above the noise that the first file states for this operation, and above the
-    noise that the second file states. The noise is the ratio of the two times of the backend that
-    was measured twice.
-A measurement counts as faster if the same conditions hold for the inverse of the ratio. If a file
-has fewer than three samples of a measurement, the first condition is that the ratio is above 2.
+The ratio of a measurement is the time in the second file, divided by the time in the first file.
 
-The default of --noise is chosen for shared virtual machines, whose speed changes over time. A
-dedicated machine allows a lower value. To find a suitable value, measure twice with the same
-program, and compare the two files.
+A measurement counts as slower if chance does not explain it: if the program did not change, at most
+one of 200 comparisons finds anything slower. The times of the launches show what chance does: files
+with one launch cannot be compared, unless a time doubled. A measurement is also slower if it became
+slower than the others did, on a machine that is faster or slower as a whole. Ratios up to --noise
+count as equal. If chance could explain a change by twice --noise, the measurement cannot be told:
+use fewer --operations, a longer --budget or more --launches for both files.
 
 Report: report.html needs no network, report.md and figures have the same content, and changes.json
 has all data. The folder must be new, empty, or written by --report of this command. Its file
@@ -87,7 +82,8 @@ sixfold-files.txt lists the files. Old figures are removed, and files of others 
 
 Exit codes: 0 success; 1 a measurement is slower and --fail-if-slower is given; 2 wrong usage, a
 file that is incomplete, has no results or has another schema version, files without a common
-measurement, or files with different --heap or --caches.";
+measurement, or files with different --heap or --caches; 3 none is slower, but some cannot be told,
+and --fail-if-slower is given.";
 
 /// Compare two files of results, and show the differences that exceed the noise.
 ///
@@ -106,13 +102,13 @@ pub(crate) struct Compare {
     /// First divide each ratio by the median of all ratios
     #[arg(long)]
     pub(crate) relative: bool,
-    /// Ignore ratios below this threshold
-    #[arg(long, value_name = "RATIO", default_value_t = sixfold_results::DRIFT, value_parser = noise)]
+    /// Count ratios up to this as equal
+    #[arg(long, value_name = "RATIO", default_value_t = sixfold_results::ranking::EQUAL, value_parser = noise)]
     pub(crate) noise: f64,
     /// Show all measurements, including unchanged ones
     #[arg(long)]
     pub(crate) all: bool,
-    /// End with exit code 1 if a measurement is slower
+    /// End with exit code 1 if a measurement is slower, 3 if one cannot be told
     #[arg(long)]
     pub(crate) fail_if_slower: bool,
     /// Write a page of the changes, largest first, and its figures to DIR

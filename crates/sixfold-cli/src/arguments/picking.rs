@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold_results::{Need, Policy};
 
-use super::{EffortArgs, ReadFiles, ResultFiles, backend, seed};
+use super::{EffortArgs, LaunchArgs, ReadFiles, ResultFiles, backend, seed};
 
 const PICK_EXAMPLES: &str = "Examples:
   sixfold pick bunny.obj
@@ -69,6 +69,8 @@ pub(crate) struct Pick {
     pub(crate) backends: Vec<String>,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     /// Seed of all random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,

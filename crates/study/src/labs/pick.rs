@@ -10,6 +10,7 @@
 mod backend;
 mod break_even;
 mod choice;
+mod launches;
 mod measurement;
 mod needs;
 mod pooled;
@@ -29,6 +30,7 @@ use sixfold_workload::{
     prepare_mix, tabulate,
 };
 
+pub(crate) use launches::pool_picks;
 pub use prediction::{Predicted, Prediction, predict};
 pub(crate) use programs::Qualification;
 pub use programs::{ProgramSettings, pick_for_programs};
@@ -179,7 +181,7 @@ pub(crate) fn pick_on(
     Ok(pooled::pooled(
         outcomes,
         Question {
-            workload: settings.workload.clone(),
+            workload: settings.workload.report(),
             program: None,
             needs: settings.needs.clone(),
             max_memory: settings.max_memory,

@@ -3,8 +3,8 @@ use crate::engine::simulated_machine::SimulatedMachine;
 use crate::labs::orders::orders_on;
 use crate::labs::study::study_on;
 use sixfold_results::{
-    CacheState, Changes, CompareError, CompareSettings, Measurement, Policy, Report, ResultRow,
-    Results, Samples, Standing, Verdict, compare,
+    CacheState, Change, Changes, CompareError, CompareSettings, Measurement, Policy, Report,
+    ResultRow, Results, Samples, Standing, Verdict, compare,
 };
 use std::sync::atomic::AtomicBool;
 
@@ -12,7 +12,10 @@ use sixfold::shapes;
 
 use crate::{Operation, Settings, StudyMesh};
 
-/// Returns a study with known samples: 1000 ns times `factor`.
+/// The times of the launches of a row, relative to its time. Their product is 1.
+const LAUNCHES: [f64; 5] = [1.0, 1.01, 1.0 / 1.01, 1.005, 1.0 / 1.005];
+
+/// Returns a study with known samples and launches: 1000 ns times `factor`.
 fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let settings = Settings {
@@ -54,9 +57,12 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
         }
     });
     report.samples = samples.collect();
-    for row in &mut report.results {
-        row.median_ns =
-            Some(1000.0 * factor(&row.backend, row.operation.parse().expect("an operation")));
+    for (number, row) in report.results.iter_mut().enumerate() {
+        let ns = 1000.0 * factor(&row.backend, row.operation.parse().expect("an operation"));
+        row.median_ns = Some(ns);
+        // Rows are slow in different launches.
+        let launches = (0..5).map(|launch| Some(ns * LAUNCHES[(launch + number) % 5]));
+        row.launch_ns = launches.collect();
         let fastest = row.backend == "half-edge";
         row.standing = Some(if fastest {
             Standing::Best
@@ -75,12 +81,25 @@ fn compared(
     compare(&before.clone().into(), &after.clone().into(), settings)
 }
 
+/// Returns a study in one launch.
+fn in_one_launch(report: &Report) -> Report {
+    let mut report = report.clone();
+    for row in &mut report.results {
+        row.launch_ns.clear();
+    }
+    report
+}
+
 /// The samples say nothing about what differs from process to process: with launches, they do not decide.
 #[test]
-fn studies_with_launches_are_compared_by_their_launches() {
+fn studies_are_compared_by_their_launches() {
     let with_launches = |factors: [f64; 3]| {
         let mut report = report(|_, _| 1.0);
         for row in &mut report.results {
+            let factors = match &*row.backend {
+                "half-edge" => factors,
+                _ => [1.0, 1.01, 0.99],
+            };
             let ns = row.median_ns.expect("measured");
             row.launch_ns = factors.map(|factor| Some(ns * factor)).into();
             row.median_ns = Some(ns * factors.iter().product::<f64>().cbrt());
@@ -95,29 +114,47 @@ fn studies_with_launches_are_compared_by_their_launches() {
             settings,
         );
         let rows = changes.expect("one memory state").rows;
-        let row = &rows[0];
+        let [own, others]: [Vec<Change>; 2] = rows
+            .into_iter()
+            .partition(|row| row.measurement.backend == "half-edge")
+            .into();
+        assert!(others.iter().all(|row| !row.verdict.is_change()));
+        let row = &own[0];
         assert!(
             (row.ratio - row.after_ns / row.before_ns).abs() < 1e-9,
             "{row:?}"
         );
-        rows.into_iter().map(|row| row.verdict).collect::<Vec<_>>()
+        own.into_iter().map(|row| row.verdict).collect::<Vec<_>>()
     };
-    assert!(
-        verdicts([1.5, 1.52, 1.48])
-            .iter()
-            .all(|&verdict| verdict == Verdict::Slower)
-    );
-    // On average as slow, but one launch is as fast as before.
-    assert!(
-        verdicts([1.0, 1.5, 2.25])
-            .iter()
-            .all(|&verdict| verdict == Verdict::Same)
-    );
-    let one = compared(&report(|_, _| 1.0), &with_launches([1.5; 3]), settings);
-    assert!(
-        one.expect("one memory state").rows[0].ci_low.is_some(),
-        "from the samples"
-    );
+    assert_eq!(verdicts([5.0, 5.05, 4.95]), [Verdict::Slower; 3]);
+    // One launch is as fast as before.
+    assert_eq!(verdicts([1.0, 1.5, 2.25]), [Verdict::CannotTell; 3]);
+}
+
+#[test]
+fn one_launch_cannot_tell_unless_a_time_doubles() {
+    let before = in_one_launch(&report(|_, _| 1.0));
+    let after = report(|backend, _| match backend {
+        "half-edge" => 2.1,
+        "corner-table" => 1.9,
+        _ => 1.0,
+    });
+    for (a, b) in [(&before, &after), (&before, &in_one_launch(&after))] {
+        let changes = compared(a, b, CompareSettings::default()).expect("one memory state");
+        for row in &changes.rows {
+            let expected = match row.measurement.backend.as_str() {
+                "half-edge" => Verdict::Slower,
+                _ => Verdict::CannotTell,
+            };
+            assert_eq!(row.verdict, expected, "{row:?}");
+            assert!(row.ci_low.is_some() && row.detectable.is_none());
+        }
+        assert!(
+            changes.sentences[1].contains("15 of them were measured in one launch"),
+            "{:?}",
+            changes.sentences
+        );
+    }
 }
 
 #[test]
@@ -126,22 +163,16 @@ fn a_known_change_is_found_and_nothing_else() {
     let after = report(|backend, operation| match (backend, operation) {
         ("half-edge", Operation::EdgeLength) => 1.5,
         ("corner-table", Operation::Build) => 0.5,
-        // The change is smaller than the drift of a machine.
+        // Less than what counts.
         ("winged-edge", Operation::Boundary) => 1.06,
         _ => 1.0,
     });
-    let quiet = CompareSettings {
-        drift: 1.05,
+    let settings = CompareSettings {
+        noise: 1.1,
         ..CompareSettings::default()
     };
-    assert_eq!(
-        compared(&before, &after, quiet)
-            .expect("one memory state")
-            .changed()
-            .count(),
-        3
-    );
-    let changes = compared(&before, &after, CompareSettings::default()).expect("one memory state");
+    let changes = compared(&before, &after, settings).expect("one memory state");
+    assert_eq!(changes.count(Verdict::CannotTell), 0);
     assert_eq!(changes.rows.len(), before.results.len());
     let found: Vec<_> = changes
         .changed()
@@ -162,7 +193,7 @@ fn a_known_change_is_found_and_nothing_else() {
     );
     let row = changes.changed().last().expect("two");
     assert!((row.ratio - 1.5).abs() < 1e-9, "{row:?}");
-    let (low, high) = row.ci_low.zip(row.ci_high).expect("nine samples each");
+    let (low, high) = row.ci_low.zip(row.ci_high).expect("five launches each");
     assert!(
         low > 1.4 && low < 1.5 && high > 1.5 && high < 1.6,
         "{row:?}"
@@ -185,14 +216,11 @@ fn a_slower_machine_is_one_factor_that_relative_removes() {
     });
     after.run.environment.cpu_model = Some("an old one".into());
     let absolute = compared(&before, &after, CompareSettings::default()).expect("one memory state");
-    assert_eq!(absolute.count(Verdict::Slower), absolute.rows.len());
+    assert_eq!(absolute.count(Verdict::Slower), 0);
+    assert_eq!(absolute.slower_as_a_whole(), Some(3.0));
+    let overall = &absolute.sentences[2];
     assert!(
-        absolute.sentences[1].contains("has 3.00 × the times of the first"),
-        "{:?}",
-        absolute.sentences
-    );
-    assert!(
-        absolute.sentences[1].contains("--relative"),
+        overall.contains("has 3.00 × the times of the first") && overall.contains("--relative"),
         "{:?}",
         absolute.sentences
     );
@@ -211,6 +239,12 @@ fn a_slower_machine_is_one_factor_that_relative_removes() {
         .map(|row| (row.measurement.backend.as_str(), row.verdict))
         .collect();
     assert_eq!(found, [("half-edge", Verdict::Faster)]);
+    assert_eq!(relative.slower_as_a_whole(), None);
+    assert!(
+        relative.sentences[1].contains("Each ratio is compared with this median"),
+        "{:?}",
+        relative.sentences
+    );
 }
 
 #[test]
@@ -285,6 +319,7 @@ fn without_samples_only_ratios_above_two_count() {
     let before = report(|_, _| 1.0);
     let mut after = report(|backend, _| if backend == "half-edge" { 2.5 } else { 1.5 });
     after.samples.clear();
+    let [before, after] = [before, after].map(|report| in_one_launch(&report));
     let changes = compared(&before, &after, CompareSettings::default()).expect("one memory state");
     let found: Vec<_> = changes
         .changed()

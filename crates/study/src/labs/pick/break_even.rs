@@ -5,6 +5,7 @@ use sixfold_workload::Task;
 
 use crate::engine::measure::Entry;
 use crate::labs::pick::backend::Candidate;
+use sixfold_results::launches::difference_over_launches;
 use sixfold_results::statistics::Median;
 
 /// A candidate with its measured tasks.
@@ -54,7 +55,7 @@ pub(crate) fn break_even(
     let Some(base) = find(BASE) else {
         return Vec::new();
     };
-    let row = |ranked: &Ranked| {
+    let saved = |ranked: &Ranked| {
         let pairs = find(&ranked.backend)?
             .samples
             .iter()
@@ -62,17 +63,40 @@ pub(crate) fn break_even(
                 let base = base.samples.iter().find(|(r, _)| r == round)?;
                 Some([base.1.ns(), time.ns()])
             });
-        let saved = Median::from_differences(&pairs.collect::<Vec<_>>())?;
-        let build = if ranked.backend == BASE {
-            0.0
-        } else {
-            ranked.first_build_ns()
-        };
+        Median::from_differences(&pairs.collect::<Vec<_>>())
+    };
+    rows(ranking, operations, saved)
+}
+
+/// Returns the break-even of each backend from the times of several launches. Time differences are formed within
+/// launches.
+pub(crate) fn break_even_over_launches(ranking: &[Ranked], operations: f64) -> Vec<BreakEven> {
+    let measured = |ranked: &&Ranked| !ranked.estimated;
+    let base = ranking.iter().find(|ranked| ranked.backend == BASE);
+    let Some(base) = base.filter(measured) else {
+        return Vec::new();
+    };
+    rows(ranking, operations, |ranked| {
+        let times = [base.ns_per_operation, ranked.ns_per_operation];
+        let launches = [&*base.launch_ns, &*ranked.launch_ns];
+        difference_over_launches(times, launches).filter(|_| !ranked.estimated)
+    })
+}
+
+/// Returns a row for each backend but the base. `saved` returns the time that it saves per operation.
+fn rows(
+    ranking: &[Ranked],
+    operations: f64,
+    saved: impl Fn(&Ranked) -> Option<Median>,
+) -> Vec<BreakEven> {
+    let row = |ranked: &Ranked| {
+        let saved = saved(ranked)?;
+        let build = ranked.first_build_ns();
         let after = |ns: f64| (ns > 0.0).then(|| build / ns);
         let pays = after(saved.value);
         Some(BreakEven {
             backend: ranked.backend.clone(),
-            build_ns: ranked.first_build_ns(),
+            build_ns: build,
             saves_ns_per_operation: saved.value,
             operations: pays,
             ci_low: saved.interval.and_then(|[_, high]| after(high)),
@@ -80,9 +104,6 @@ pub(crate) fn break_even(
             uses: pays.map(|pays| pays / operations),
         })
     };
-    ranking
-        .iter()
-        .filter(|ranked| ranked.backend != BASE)
-        .filter_map(row)
-        .collect()
+    let others = ranking.iter().filter(|ranked| ranked.backend != BASE);
+    others.filter_map(row).collect()
 }

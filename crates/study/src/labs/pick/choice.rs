@@ -123,12 +123,14 @@ mod tests {
             operation: operation.name().into(),
             share: 0.5,
             ns: Some(ns),
+            launch_ns: Vec::new(),
             estimated: false,
         };
         Ranked {
             backend: backend.into(),
             made_from: None,
             ns_per_operation: 0.5 * (parts[0] + parts[1]),
+            launch_ns: Vec::new(),
             ns_ci_low: None,
             ns_ci_high: None,
             ratio_to_best: ratio,
@@ -136,6 +138,7 @@ mod tests {
             ci_high: tied.then_some(1.1 * ratio),
             tied_with_best: tied,
             build_ns: 1.0,
+            build_launch_ns: Vec::new(),
             first_build_ns: None,
             bytes,
             bytes_per_vertex: bytes as f64,

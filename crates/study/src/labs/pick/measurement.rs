@@ -16,6 +16,7 @@ use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::{MeasuredMix, break_even};
 use crate::labs::pick::tasks::TaskPlan;
 use crate::labs::study::is_skewed;
+use sixfold_results::launches::times_over_launches;
 use sixfold_results::ranking::{NO_DIFFERENCE, rank, ratio};
 use sixfold_results::statistics::Median;
 
@@ -38,7 +39,8 @@ pub(crate) struct MeshOutcome {
     pub(crate) ranking: Vec<Ranked>,
     pub(crate) excluded: Vec<Excluded>,
     pub(crate) break_even: Vec<BreakEven>,
-    pub(crate) noise: Option<f64>,
+    /// The time of the second measurement of one backend divided by the time of the first, in each launch.
+    pub(crate) control_ratios: Vec<Option<f64>>,
     /// Backends whose results differ from the others.
     pub(crate) disagreeing: Vec<String>,
     pub(crate) operations: f64,
@@ -46,6 +48,16 @@ pub(crate) struct MeshOutcome {
     pub(crate) shortest_ns: Option<f64>,
     /// All samples, also those of the control.
     pub(crate) samples: Vec<Samples>,
+}
+
+impl MeshOutcome {
+    /// Returns the longer time of the two measurements of one backend divided by the shorter time.
+    pub(crate) fn noise(&self) -> Option<f64> {
+        let [ratio] = times_over_launches(&[&self.control_ratios])[..] else {
+            return None;
+        };
+        ratio.map(|ratio| ratio.max(ratio.recip()))
+    }
 }
 
 impl PickMeasurement<'_, '_> {
@@ -121,8 +133,9 @@ impl PickMeasurement<'_, '_> {
             counts: &self.counts,
             measured: &measured,
         };
-        let noise = control.and_then(|control| evaluation.noise(&control));
-        let ranking = evaluation.ranking(noise.unwrap_or(1.0).max(NO_DIFFERENCE));
+        let repeated = control.and_then(|control| evaluation.control_ratio(&control));
+        let noise = repeated.map_or(1.0, |ratio| ratio.max(ratio.recip()));
+        let ranking = evaluation.ranking(noise.max(NO_DIFFERENCE));
         let operations = plan.operations();
         let wrong = entries.iter().zip(agreements);
         let wrong = wrong.filter(|(_, agreement)| *agreement == Agreement::Mismatch);
@@ -136,7 +149,7 @@ impl PickMeasurement<'_, '_> {
             break_even: break_even(&measured, &ranking, operations),
             ranking,
             excluded,
-            noise,
+            control_ratios: repeated.map(Some).into_iter().collect(),
             disagreeing: wrong.collect(),
             operations,
             shortest_ns,
@@ -152,12 +165,11 @@ struct Evaluation<'e> {
 }
 
 impl Evaluation<'_> {
-    /// Returns the ratio, 1 or more, of the two times of a backend that was measured twice.
-    fn noise(&self, control: &MeasuredMix<'_>) -> Option<f64> {
+    /// Returns the ratio of the two times of a backend that was measured twice.
+    fn control_ratio(&self, control: &MeasuredMix<'_>) -> Option<f64> {
         let same = |m: &&MeasuredMix<'_>| m.candidate.name == control.candidate.name;
         let original = self.measured.iter().find(same)?;
-        let ratio = ratio(&control.samples, &original.samples)?.value;
-        Some(ratio.max(ratio.recip()))
+        Some(ratio(&control.samples, &original.samples)?.value)
     }
 
     /// Ranks the backends that have samples; the fastest first. Differences up to `noise` are ties. A
@@ -214,6 +226,7 @@ impl Evaluation<'_> {
             backend: name.clone(),
             made_from: made_from.map(str::to_owned),
             ns_per_operation: median(&m.samples)?,
+            launch_ns: Vec::new(),
             ns_ci_low: None,
             ns_ci_high: None,
             ratio_to_best: 1.0,
@@ -221,6 +234,7 @@ impl Evaluation<'_> {
             ci_high: None,
             tied_with_best: false,
             build_ns: median(&build.times())?,
+            build_launch_ns: Vec::new(),
             first_build_ns: build.first_ns(),
             bytes: *bytes,
             bytes_per_vertex: *bytes as f64 / self.counts.vertices.max(1) as f64,

@@ -2,20 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use sixfold_workload::Workload;
-
 use crate::labs::pick::choice::choose;
 use crate::labs::pick::measurement::MeshOutcome;
 use crate::labs::pick::reasons;
 use sixfold_results::ranking::NO_DIFFERENCE;
 use sixfold_results::statistics::MIN_SAMPLES;
 use sixfold_results::{
-    BreakEven, Excluded, MeshRanking, Need, PartCost, PickReport, ProgramReport, Ranked, Run, Timer,
+    BreakEven, Excluded, MeshRanking, Need, PartCost, PickReport, ProgramReport, Ranked, Run,
+    Timer, WorkloadReport,
 };
 
 /// What is asked of the backends.
 pub(crate) struct Question {
-    pub(crate) workload: Workload,
+    pub(crate) workload: WorkloadReport,
     /// The program that was run in place of the workload.
     pub(crate) program: Option<ProgramReport>,
     pub(crate) needs: Vec<Need>,
@@ -45,7 +44,7 @@ pub(crate) fn pooled(
             excluded.push(Excluded { reason, ..new });
         }
     }
-    let noise = outcomes.iter().filter_map(|o| o.noise);
+    let noise = outcomes.iter().filter_map(MeshOutcome::noise);
     let noise = noise.reduce(f64::max);
     let ranking = match &outcomes[..] {
         [only] => only.ranking.clone(),
@@ -71,7 +70,7 @@ pub(crate) fn pooled(
     let mut report = PickReport {
         run,
         meshes: outcomes.iter().map(|o| o.mesh.clone()).collect(),
-        workload: question.workload.report(),
+        workload: question.workload,
         program: question.program,
         operations,
         needs: question.needs,
@@ -84,6 +83,7 @@ pub(crate) fn pooled(
         excluded,
         break_even,
         noise,
+        control_ratios: Vec::new(),
         mismatches: disagreeing,
         sentences: Vec::new(),
         warnings: Vec::new(),
@@ -94,17 +94,20 @@ pub(crate) fn pooled(
     };
     if several {
         let each = outcomes.into_iter().map(|outcome| MeshRanking {
+            noise: outcome.noise(),
             mesh: outcome.mesh.name,
             samples: outcome.samples,
             ranking: outcome.ranking,
             break_even: outcome.break_even,
-            noise: outcome.noise,
+            control_ratios: outcome.control_ratios,
+            operations: outcome.operations,
         });
         report.by_mesh = each.collect();
-    } else {
-        report.samples = outcomes.into_iter().flat_map(|o| o.samples).collect();
+    } else if let Some(only) = outcomes.pop() {
+        report.samples = only.samples;
+        report.control_ratios = only.control_ratios;
     }
-    report.sentences = reasons::sentences(&report, &question.workload);
+    report.sentences = reasons::sentences(&report);
     report.warnings = reasons::warnings(&report);
     report
 }
@@ -155,6 +158,7 @@ fn ranked_on_all(outcomes: &[MeshOutcome], noise: f64) -> Vec<Ranked> {
         let bytes = rows.iter().map(|r| r.bytes).max().unwrap_or(0);
         Ranked {
             ns_per_operation: time(rows),
+            launch_ns: Vec::new(),
             ns_ci_low: None,
             ns_ci_high: None,
             ratio_to_best: ratio,
@@ -162,6 +166,7 @@ fn ranked_on_all(outcomes: &[MeshOutcome], noise: f64) -> Vec<Ranked> {
             ci_high: known.then(|| ratio * half_width.exp()),
             tied_with_best: tied && !estimated,
             build_ns: geometric(rows.iter().map(|r| r.build_ns)),
+            build_launch_ns: Vec::new(),
             first_build_ns: rows
                 .iter()
                 .map(|r| r.first_build_ns)
@@ -187,6 +192,7 @@ fn parts_on_all(rows: &[&Ranked]) -> Vec<PartCost> {
         PartCost {
             share: mean(on_each().map(|part| part.share)).unwrap_or(part.share),
             ns: times.map(|times| geometric(times.into_iter())),
+            launch_ns: Vec::new(),
             estimated: on_each().any(|part| part.estimated),
             operation: part.operation.clone(),
         }

@@ -187,7 +187,7 @@ pub(crate) fn pick_for_programs_on(
             break;
         }
         let question = Question {
-            workload: workload(program, settings.runs),
+            workload: workload(program, settings.runs).report(),
             program: Some(ProgramReport {
                 kind: program.kind().to_owned(),
                 asked,

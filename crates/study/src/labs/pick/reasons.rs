@@ -6,10 +6,10 @@ use crate::packages;
 use sixfold_results::numbers::{counted, duration, figure, grouped, list, rounded};
 use sixfold_results::statistics::MIN_SAMPLES;
 use sixfold_results::{EQUAL_UP_TO, Need, PartCost, PickReport, ProgramReport, Ranked, Samples};
-use sixfold_workload::{Action, Workload};
+use sixfold_workload::Action;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
-pub(crate) fn sentences(report: &PickReport, workload: &Workload) -> Vec<String> {
+pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     let best = match report.ranking.first() {
         None => return vec!["No backend qualifies.".into()],
         Some(best) if best.estimated => return vec![NOT_MEASURED.into()],
@@ -30,7 +30,7 @@ pub(crate) fn sentences(report: &PickReport, workload: &Workload) -> Vec<String>
     sentences.extend(dominant_part(report, best));
     sentences.extend(largest_loss(report, best));
     sentences.extend(tables(report, best));
-    sentences.extend(refined_form(report, workload));
+    sentences.extend(refined_form(report));
     sentences.extend(one_use_with_building(report, used));
     sentences.push(packages_to_add(used));
     sentences
@@ -41,8 +41,9 @@ const NOT_MEASURED: &str = "No backend was measured, because a run would exceed 
 
 /// Names the form of the structures that steps of subdivision refine, if the other operations need the
 /// editable form.
-fn refined_form(report: &PickReport, workload: &Workload) -> Option<String> {
-    let actions = || workload.mix.iter().map(|part| part.action);
+fn refined_form(report: &PickReport) -> Option<String> {
+    let parts = || report.workload.mix.iter();
+    let actions = || parts().filter_map(|part| part.action.parse::<Action>().ok());
     let edits = report.needs.contains(&Need::Edit) || actions().any(Action::needs_editable_mesh);
     let mut subdivision = actions().filter(|&action| match action {
         Action::Pass(operation) => operation.subdivides(),

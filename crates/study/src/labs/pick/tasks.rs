@@ -166,6 +166,7 @@ impl TaskPlan for Tasks<'_> {
                 estimated: entry.is_some_and(|entry| entry.estimate.is_some()),
                 operation: schedule.parts[part].action.to_string(),
                 share: schedule.shares[part],
+                launch_ns: Vec::new(),
                 ns: entry.and_then(|entry| {
                     let times = entry.times();
                     let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));

@@ -167,7 +167,7 @@ fn known_ratios_are_found_on_a_drifting_machine() {
     }
     assert!(of("half-edge").tied_with_best && of("face-vertex").tied_with_best);
     assert!(!of("corner-table").tied_with_best && !of("indexed-face-set").tied_with_best);
-    assert!(outcome.noise.expect("a control") < 1.02);
+    assert!(outcome.noise().expect("a control") < 1.02);
     assert_eq!(outcome.disagreeing, [FAULTY]);
 }
 
@@ -607,7 +607,7 @@ fn a_lower_bound_below_a_measured_time_is_not_ranked_before_it() {
         let settings = settings(Effort::of_ms(1000));
         let measured = quick(&settings, &[shapes::octahedron()]).expect("a report");
         let question = pooled::Question {
-            workload: settings.workload,
+            workload: settings.workload.report(),
             program: None,
             needs: Vec::new(),
             max_memory: None,

@@ -158,9 +158,6 @@ fn rounds_sample_scans_by_the_number_of_faces() {
             let one_run = scans || is_one_run;
             assert_eq!(row.runs_per_sample == 1, one_run, "{context}: {row:?}");
         }
-        // On this machine, a backend that is measured twice has equal times.
-        let figures = report.figures();
-        assert!(figures.iter().all(|figure| figure.noise == 1.02));
         // The tasks are warmed up in the first tenth of the work. One backend is measured twice.
         let tasks = 3.0 * 7.0;
         assert_eq!(warming.len(), 21);
