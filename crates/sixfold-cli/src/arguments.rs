@@ -86,10 +86,12 @@ mean over the launches. In each round, one backend is measured twice. The differ
 times of this backend is the noise. A difference between backends that is smaller than the noise is
 not decided.
 
-Budget and rounds: With --budget, as many rounds are run as fit into the time. What takes too long is
-sampled, estimated or left out. A budget below 6s has one launch. With --rounds, exactly this number
-of rounds of everything is run in each launch (one by default), without a time limit. Two machines then do the same work: whether a slow operation runs on a sample
-of the elements depends on the number of elements, not on measured times.
+Budget and rounds: With --budget, as many rounds are run as fit into the time. The structures that
+can win come first. What takes too long is sampled, run once after the rounds, estimated or left
+out, also if it is named; with --force, it is run. A budget below 6s has one launch. With --rounds,
+exactly this number of rounds of everything is run in each launch (one by default), without a time
+limit. Two machines then do the same work: whether a slow operation runs on a sample of the elements
+depends on the number of elements, not on measured times.
 
 Seed: The seed determines the random order of the runs, and which elements are in a sample.
 
@@ -274,6 +276,9 @@ pub(crate) struct Study {
     /// Measure exactly N rounds of everything, without a time limit
     #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
     pub(crate) rounds: Option<NonZeroU32>,
+    /// Run every operation on every backend, whatever it takes
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) launching: LaunchArgs,
     /// Seed of the random order and of random samples

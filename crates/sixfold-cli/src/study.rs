@@ -30,6 +30,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         externals: arguments.externals.clone(),
         external_timeout: arguments.external_timeout,
         operations: arguments.operations.clone(),
+        force: arguments.force,
         effort: launch.map_or(effort, |launch| launch.effort(effort)),
         seed: launch.map_or(arguments.seed, |launch| launch.seed(arguments.seed)),
         heap: arguments.memory.heap,

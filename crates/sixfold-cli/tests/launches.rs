@@ -484,3 +484,34 @@ fn a_launch_ends_with_its_command() {
         wait_for(|| (state().is_empty() || state().contains(") Z ")).then_some(()));
     }
 }
+
+#[test]
+fn what_is_forced_is_run_whatever_it_takes() {
+    let sixfold = Sixfold::new();
+    // A search of the soup for each of 7,200 faces takes far longer than the budget.
+    sixfold.grid("large.obj", 60);
+    let study = |more: &[&'static str]| {
+        let arguments = [
+            "study",
+            "large.obj",
+            "--operations",
+            "catmull_clark_gather",
+            "--backends",
+            "polygon-soup,half-edge",
+            "--budget",
+            "50ms",
+            "--json",
+            "study.json",
+        ];
+        run_ok(&sixfold, &[&arguments, more].concat());
+        let study = document(&sixfold, "study.json");
+        let rows = study["findings"][0]["results"]
+            .as_array()
+            .expect("rows")
+            .clone();
+        let row = rows.iter().find(|row| row["backend"] == "polygon-soup");
+        row.is_some_and(|row| row["median_ns"].is_f64())
+    };
+    assert!(!study(&[]), "the budget holds");
+    assert!(study(&["--force"]));
+}

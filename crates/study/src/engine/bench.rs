@@ -97,6 +97,7 @@ impl<'m> Bench<'m> {
             entries,
             effort,
             named,
+            forced,
             seed,
         } = trial;
         let (stop, clock) = (self.stop, self.clock());
@@ -109,6 +110,7 @@ impl<'m> Bench<'m> {
             skewed,
             effort,
             named,
+            forced,
             random: ChaCha8Rng::seed_from_u64(seed),
             subjects: &mut columns.subjects,
             control: columns.control.map(|[_, second]| second),
@@ -148,6 +150,8 @@ pub(crate) struct Trial<'s> {
     pub(crate) effort: Effort,
     /// Whether the operations were requested by name.
     pub(crate) named: bool,
+    /// Whether all operations are run at any price.
+    pub(crate) forced: bool,
     /// Seed of the order of the measurements.
     pub(crate) seed: u64,
 }

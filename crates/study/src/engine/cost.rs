@@ -103,6 +103,7 @@ fn engine_cost() {
         columns,
         effort,
         named: false,
+        forced: false,
         seed: 1,
     };
     let mut bench =

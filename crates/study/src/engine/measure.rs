@@ -9,7 +9,8 @@
 //! untimed runs bring the data of the structure into the caches.
 //!
 //! If there is time, all structures are built again between rounds, at other addresses. After the
-//! last round, operations that allocate are also measured on fresh memory pages.
+//! last round, operations that are too long for the rounds run once, if there is time. At the end,
+//! operations that allocate are also measured on fresh memory pages.
 
 use std::hint::black_box;
 use std::num::NonZeroU32;
@@ -39,6 +40,10 @@ const MAX_ROUNDS: u32 = 200;
 const FULL_ROUNDS_SHARE: f64 = 0.75;
 /// Part of the budget for the samples on fresh pages.
 const FIRST_TIMES_SHARE: f64 = 0.1;
+/// Part of the budget for runs that are too long for the rounds, if there are such runs. They come after the rounds, in
+/// which the fastest backends are decided. An operation that was requested by name gets more time.
+const ESTIMATED_SHARE: f64 = 0.2;
+pub(crate) const ESTIMATED_NAMED_SHARE: f64 = 0.4;
 /// Maximum number of samples on fresh pages.
 const MAX_FIRST_TIMES: u32 = 9;
 /// Part of the elapsed time for building the structures again.
@@ -281,6 +286,7 @@ pub(crate) struct Measurement<'m, 's> {
     pub(crate) skewed: bool,
     pub(crate) effort: Effort,
     pub(crate) named: bool,
+    pub(crate) forced: bool,
     pub(crate) random: ChaCha8Rng,
     pub(crate) subjects: &'m mut [Box<dyn TimedBackend + 's>],
     /// Index of the second copy of the backend that is measured twice.
@@ -306,11 +312,22 @@ impl<'m> Measurement<'m, '_> {
         let memory = &self.memory;
         let fresh_pages = memory.can_release_pages() && !memory.is_cold();
         let first_times = allocates && fresh_pages;
-        let for_rounds = match first_times {
+        let for_runs = match first_times {
             true => (1.0 - FIRST_TIMES_SHARE) * limit_ns,
             false => limit_ns,
         };
-        self.rounds(&mut entries, start, start + for_rounds);
+        let estimated = entries.iter().any(|entry| entry.estimate.is_some());
+        let for_estimated = match (estimated, self.named) {
+            (false, _) => 0.0,
+            (true, false) => ESTIMATED_SHARE,
+            (true, true) => ESTIMATED_NAMED_SHARE,
+        };
+        self.rounds(
+            &mut entries,
+            start,
+            start + (1.0 - for_estimated) * for_runs,
+        );
+        self.run_estimated(&mut entries, start + for_runs);
         // First runs come last, because they return pages to the kernel. Other samples would reuse
         // these pages.
         if first_times {

@@ -1,6 +1,6 @@
 //! Runs every operation once, and plans samples that fit the budget.
 
-use crate::engine::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
+use crate::engine::measure::{ESTIMATED_NAMED_SHARE, Entry, MAX_RUNS, Measurement, untimed_runs};
 use sixfold_results::{RefusalKind, Time};
 use sixfold_workload::{ElementKind, Operation};
 use sixfold_workload::{ElementSample, Job, Task, TimedRun, exceeds_second_level};
@@ -26,10 +26,10 @@ const LONGEST_IN_ROUNDS: f64 = 0.1;
 const SCANS_PART: f64 = 0.25;
 /// Minimum number of elements in a sample.
 pub(crate) const MIN_ELEMENTS: usize = 16;
-/// Maximum time of a single run outside the rounds, as a part of the time left.
-const LONGEST_ONCE: f64 = 0.5;
-/// Maximum time of a single run of an unnamed operation that makes a mesh, as a part of the time
-/// left.
+/// Maximum time of a single run outside the rounds of an operation that was requested by name, as a part of the
+/// budget.
+const LONGEST_ONCE: f64 = ESTIMATED_NAMED_SHARE;
+/// Maximum time of a single run of an unnamed operation that makes a mesh, as a part of the budget.
 const LONGEST_UNNAMED: f64 = 0.02;
 /// Why an operation that was not requested by name has no result.
 const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
@@ -38,9 +38,8 @@ const FIRST_PATCH: usize = 1024;
 
 impl Measurement<'_, '_> {
     /// Runs everything once and plans samples that fit the budget. Operations that do not scan come
-    /// first, then operations that scan. At the end, operations without a run are run once if there
-    /// is time. When the budget ends, the remaining operations are refused, unless they were
-    /// requested by name.
+    /// first, then operations that scan. When the budget ends, the remaining operations are refused,
+    /// unless they are forced, or were requested by name and do not scan.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
@@ -66,7 +65,8 @@ impl Measurement<'_, '_> {
                 };
                 let left = (deadline - self.clock().now().wall_ns).max(0.0) * part;
                 // All backends of a task are run, or none, so that they can be compared.
-                if last_task.is_some_and(|task| task != entry.job.task) && !self.named {
+                let is_asked_for = self.forced || (self.named && !scanning);
+                if last_task.is_some_and(|task| task != entry.job.task) && !is_asked_for {
                     // The first pass leaves a part of the time to the second pass.
                     let reserved = match scanning {
                         true => 0.0,
@@ -93,13 +93,12 @@ impl Measurement<'_, '_> {
                 }
             }
         }
-        self.run_estimated(entries, deadline);
         equalise_mixes(entries);
     }
 
-    /// Runs once each operation that was only estimated, if the run fits into the time left. The
-    /// shortest operation comes first.
-    fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
+    /// Runs once each operation that was only estimated, if the run fits into the time left, or if it
+    /// is forced. The shortest operation comes first.
+    pub(crate) fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.effort.limit_ns();
         let mut estimated: Vec<(f64, &mut Entry)> = entries
             .iter_mut()
@@ -111,16 +110,16 @@ impl Measurement<'_, '_> {
             if self.stopped() {
                 return;
             }
-            let part = match (entry.job.task.creates_mesh(), self.named) {
-                (false, _) => LONGEST_ONCE,
-                (true, false) => LONGEST_UNNAMED,
-                (true, true) => 1.0, // it was named in the settings
+            let unnamed = entry.job.task.creates_mesh() && !self.named;
+            let most = match unnamed {
+                true => left.min(LONGEST_UNNAMED * budget),
+                false => left,
             };
-            if wall_ns > part * left {
-                entry.by_name_only = part == LONGEST_UNNAMED && wall_ns <= LONGEST_ONCE * budget;
+            if wall_ns > most && !self.forced {
+                entry.by_name_only = unnamed && wall_ns <= LONGEST_ONCE * budget;
                 continue;
             }
-            self.report(0.1, "warming up", entry);
+            self.report(1.0, "running once", entry);
             let run = self.run(entry.subject, &entry.job, [0, 1], true);
             entry.estimate = None;
             entry.every = 0;

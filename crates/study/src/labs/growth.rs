@@ -240,6 +240,7 @@ impl Sweep<'_> {
             columns,
             effort: effort(),
             named: !self.settings.study.operations.is_empty(),
+            forced: self.settings.study.force,
             seed: seed.wrapping_add(step as u64),
         };
         let measured = self.bench.measure(trial, progress);

@@ -162,6 +162,7 @@ pub(crate) fn neighbours_on(
         columns,
         effort: budget.left(),
         named: true,
+        forced: false,
         seed: settings.seed,
     };
     let measured = bench.measure(trial, progress);

@@ -139,6 +139,7 @@ pub(crate) fn orders_on(
         columns: built,
         effort: budget.left(),
         named: !settings.operations.is_empty(),
+        forced: settings.force,
         seed: settings.seed,
     };
     // One correction for all orders of all structures, so that all their times can be compared.

@@ -49,6 +49,8 @@ pub struct Settings {
     /// How much is measured. If a time limit is too short for an operation, the operation is run on
     /// only some of the elements, its time is estimated, or the operation is left out.
     pub effort: Effort,
+    /// If true, every operation is run at least once on every backend, whatever it takes.
+    pub force: bool,
     /// Seed of the random numbers that choose elements and the order of the measurements. The
     /// number of chosen elements does not depend on the seed.
     pub seed: u64,
@@ -68,6 +70,7 @@ impl Default for Settings {
             external_timeout: EXTERNAL_TIMEOUT,
             operations: Vec::new(),
             effort: Effort::Budget(Duration::from_secs(20)),
+            force: false,
             seed: 1,
             heap: Policy::Kept,
             caches: CacheState::Warm,
@@ -283,6 +286,7 @@ pub(crate) fn study_on(
         columns,
         effort: budget.left(),
         named: !settings.operations.is_empty(),
+        forced: settings.force,
         seed: settings.seed,
     };
     let measured = bench.measure(trial, progress);

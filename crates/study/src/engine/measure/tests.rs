@@ -152,6 +152,7 @@ struct Limits {
     stop: bool,
     skewed: bool,
     named: bool,
+    forced: bool,
 }
 
 impl Limits {
@@ -162,6 +163,7 @@ impl Limits {
             stop: false,
             skewed: false,
             named: false,
+            forced: false,
         }
     }
 }
@@ -197,6 +199,7 @@ fn watch_trial(
         columns,
         effort: limits.effort,
         named: limits.named,
+        forced: limits.forced,
         seed: 3,
     };
     let settings = RunSettings {
@@ -545,17 +548,22 @@ fn a_skewed_mesh_is_sampled_on_every_structure() {
 
 #[test]
 fn a_search_that_fits_the_budget_once_is_run_once() {
-    // A run takes 1 s. This is too long for rounds in a budget of 6 s, but short enough for one
-    // run.
-    let (entries, elapsed) = measure_all(&[100_000.0], true, Duration::from_secs(6), false, false);
+    // A run takes 1 s. This is too long for rounds in a budget of 8 s, but short enough for one
+    // run after the rounds.
+    let (entries, elapsed) = measure_all(&[100_000.0], true, Duration::from_secs(8), false, false);
     let search = &entries[2];
     assert!(search.estimate.is_none() && search.samples.is_empty());
     assert_eq!(search.times().len(), 1);
-    assert!(elapsed < Duration::from_secs(8), "{elapsed:?}");
+    assert!(elapsed < Duration::from_secs(9), "{elapsed:?}");
     assert!(
         entries[0].samples.len() >= 5,
         "the others keep their rounds"
     );
+    // In less time, the run would take more than what is left for such runs.
+    let (entries, elapsed) = measure_all(&[100_000.0], true, Duration::from_secs(4), false, false);
+    assert!(entries[2].estimate.is_some() && entries[2].times().is_empty());
+    assert!(entries[0].samples.len() >= 5);
+    assert!(elapsed < Duration::from_secs(5), "{elapsed:?}");
 }
 
 #[test]
@@ -579,7 +587,7 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
         let operations = [Operation::CatmullClark(Method::Gather)];
         let limits = Limits {
             named,
-            ..Limits::of(Duration::from_secs(2).into())
+            ..Limits::of(Duration::from_secs(4).into())
         };
         let entries = run_trial(&machine, subjects, &operations, limits);
         (entries[0].clone(), most_run.get())
@@ -587,7 +595,7 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
     // A run takes 1 ms, so it takes part in rounds.
     let (entry, _) = planned(100.0, QueryCost::Local, false);
     assert!(entry.samples.len() >= 5 && entry.estimate.is_none());
-    // A run takes 0.3 s of a budget of 2 s, so it is estimated unless it is named.
+    // A run takes 0.3 s of a budget of 4 s, so it is estimated unless it is named.
     let (entry, most_run) = planned(30_000.0, QueryCost::Local, false);
     let estimate = entry.estimate.expect("long").ns();
     assert!((1e8..1e9).contains(&estimate) && entry.by_name_only);

@@ -163,6 +163,7 @@ pub(crate) fn build_tables<'a>(
         columns,
         effort,
         named: true,
+        forced: false,
         seed,
     };
     let measured = bench.measure(trial, &mut |_| ());

@@ -86,6 +86,7 @@ impl PickMeasurement<'_, '_> {
             entries: plan.entries(&candidates),
             effort: self.effort,
             named: true,
+            forced: false,
             seed: self.seed,
         };
         let measured = self.bench.measure(trial, &mut |at: Progress<'_>| {

@@ -127,6 +127,7 @@ pub(crate) fn record_program_on(
         columns: Columns::without_control(subjects),
         effort: budget.share(1.0, SELECTION_SHARE),
         named: true,
+        forced: true,
         seed: settings.seed,
     };
     let measured = bench.measure(trial, &mut |_| ());
@@ -220,6 +221,7 @@ fn calibrate(
         entries,
         effort,
         named: true,
+        forced: true,
         seed,
     };
     let measured = bench.measure(trial, &mut |_| ());
