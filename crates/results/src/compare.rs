@@ -81,8 +81,8 @@ pub struct Changes {
 /// A difference between the machines, programs or settings of two documents.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SettingChange {
-    /// Name of the setting.
-    pub what: &'static str,
+    /// Name of the setting, or the key of a tag.
+    pub what: String,
     /// The value in the first document.
     pub before: String,
     /// The value in the second document.
@@ -286,7 +286,7 @@ pub fn compare(
     let rows: Vec<Change> = rows.collect();
     let mut environment: Vec<SettingChange> = Vec::new();
     for (a, b) in in_both() {
-        for change in differences(a.finding.run(), b.finding.run()) {
+        for change in a.finding.run().differences(b.finding.run()) {
             if !environment.contains(&change) {
                 environment.push(change);
             }
@@ -414,7 +414,13 @@ fn verdict(
     }
 }
 
-/// Returns the differences between machines, programs and settings.
+impl Run {
+    /// Returns the differences between the machines, programs, settings and tags of this run and `after`.
+    pub fn differences(&self, after: &Self) -> Vec<SettingChange> {
+        differences(self, after)
+    }
+}
+
 fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
@@ -449,8 +455,20 @@ fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
         ]
     };
     let pairs = facts(before).into_iter().zip(facts(after));
-    let differs = pairs.filter(|((_, before), (_, after))| before != after);
-    let setting = |((what, before), (_, after))| SettingChange {
+    let facts = pairs.map(|((what, before), (_, after))| (what.to_owned(), before, after));
+    let keys: BTreeSet<&String> = before.tags.keys().chain(after.tags.keys()).collect();
+    let tags = keys.into_iter().map(|key| {
+        let [own, other] = [before, after].map(|run| run.tags.get(key).cloned());
+        (
+            key.clone(),
+            own.unwrap_or_default(),
+            other.unwrap_or_default(),
+        )
+    });
+    let differs = facts
+        .chain(tags)
+        .filter(|(_, before, after)| before != after);
+    let setting = |(what, before, after)| SettingChange {
         what,
         before,
         after,

@@ -9,6 +9,7 @@
 //! `reports/SCHEMA.md` explains the values in the document.
 
 mod compare;
+mod conclusions;
 mod corrected;
 mod csv;
 mod document;
@@ -38,6 +39,7 @@ pub use compare::{
     BytesChange, Change, Changes, CompareError, CompareSettings, FALSE_ALARM, Measurement,
     MeasurementPart, NewWinner, SettingChange, Verdict, compare,
 };
+pub use conclusions::{Conclusion, Fate, conclusions};
 pub use corrected::corrected_times;
 pub use csv::write_csv_rows;
 pub use document::{Failed, FailureKind, Results, SCHEMA};

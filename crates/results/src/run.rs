@@ -1,5 +1,6 @@
 //! How results were measured: the command, its settings, and the machine.
 
+use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,9 @@ pub struct Run {
     /// The operations that this version of Sixfold can measure, in the order of tables. Empty for a
     /// command that measures no operations.
     pub operations: Vec<OperationInfo>,
+    /// What the user calls this measurement, such as the name of an experiment.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tags: BTreeMap<String, String>,
     /// The start of the measurement. In JSON, the field `start` of the finding.
     #[serde(skip)]
     pub start: Start,
@@ -116,6 +120,7 @@ impl Run {
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let parts = |run: &Self| (run.command.clone(), run.settings.clone());
         parts(self) == parts(other)
+            && self.tags == other.tags
             && (&self.environment, &self.operations) == (&other.environment, &other.operations)
     }
 }

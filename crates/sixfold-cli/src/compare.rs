@@ -121,7 +121,8 @@ fn names(places: [&Path; 2]) -> [String; 2] {
     different.unwrap_or_else(|| last(1))
 }
 
-fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
+/// Prints the changes: differences of machine and settings, changed times or `all`, and sentences.
+pub(crate) fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
     for setting in &changes.environment {
         let first = format!("{:<13}", setting.what);
         let both = format!("{} → {}", setting.before, setting.after);

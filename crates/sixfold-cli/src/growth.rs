@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     let settings = GrowthSettings {
         study: Settings {
             backends: arguments.backends.clone(),
-            operations: arguments.operations.clone(),
+            operations: arguments.operations.selected(),
             effort: arguments.effort.effort(),
             seed: arguments.seed,
             heap: arguments.memory.heap,

@@ -36,7 +36,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
         "See how structures work",
         &["explore", "tables", "trace", "lessons"],
     ),
-    ("Saved results", &["report", "compare", "merge"]),
+    ("Saved results", &["report", "compare", "rerun", "merge"]),
     (
         "Meshes",
         &[

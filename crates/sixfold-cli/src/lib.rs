@@ -49,6 +49,7 @@
 //! | 4 | interrupted; finished results are kept |
 
 mod arguments;
+mod baselines;
 mod column_table;
 mod compare;
 mod convert;
@@ -84,6 +85,7 @@ mod progress;
 mod remesh;
 mod render;
 mod repair;
+mod rerun;
 mod reshape;
 mod results_table;
 mod schemes;
@@ -152,6 +154,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),
         Ok(Some(Command::Report(arguments))) => many::draw(&arguments),
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
+        Ok(Some(Command::Rerun(arguments))) => rerun::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Distance(arguments))) => distance::run(&arguments),
         Ok(Some(Command::Neighbours(arguments))) => neighbours::run(&arguments),

@@ -27,6 +27,7 @@ pub(crate) struct Session {
     pub(crate) stop: Arc<AtomicBool>,
     /// Prints nothing if results are written to standard output.
     pub(crate) text: TextOutput,
+    tags: Vec<(String, String)>,
     files: OpenFiles,
 }
 
@@ -56,6 +57,7 @@ impl Session {
             return Ok(Self {
                 stop,
                 text: TextOutput::new(false),
+                tags: Vec::new(),
                 files: OpenFiles {
                     json: Output::open_if(Some(&PathBuf::from("-")))?,
                     csv: None,
@@ -70,6 +72,7 @@ impl Session {
         Ok(Self {
             stop,
             text: TextOutput::new(!uses_stdout),
+            tags: files.tags.clone(),
             files: OpenFiles {
                 json: Output::open_if(files.json.as_ref())?,
                 csv: Output::open_if(files.csv.as_ref())?,
@@ -97,6 +100,9 @@ impl Session {
     /// cannot be written, writes the others anyway, and returns the first error.
     pub(crate) fn write(self, results: &mut Results) -> Result<(), Failure> {
         results.add_notices(take_notices());
+        for finding in &mut results.findings {
+            finding.run_mut().tags.extend(self.tags.iter().cloned());
+        }
         let OpenFiles {
             json,
             csv,

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let study_mesh = session.drawn(study_mesh);
     let settings = Settings {
         backends: arguments.backends.clone(),
-        operations: arguments.operations.clone(),
+        operations: arguments.operations.selected(),
         effort: arguments.effort.effort(),
         seed: arguments.seed,
         heap: arguments.memory.heap,

@@ -5,12 +5,13 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
-use sixfold_results::{BreakEven, Finding, OwnBytes, OwnData, PickReport, Ranked};
+use sixfold_results::{BreakEven, Finding, OwnBytes, OwnData, PickReport, Ranked, Results};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
 
 use crate::arguments::{Pick, ReadFiles};
+use crate::baselines::Baselines;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
 use crate::launches::{self, Launch};
@@ -31,6 +32,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.trace {
         return run_trace(path, arguments);
     }
+    let baselines = Baselines::open(&arguments.baselines)?;
     let workload = workload(&arguments.workload)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
@@ -66,7 +68,10 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let report = report?;
     print(&report, &mut session.text);
     let none_qualifies = report.ranking.is_empty() && !report.interrupted;
-    let code = session.finish(with_command(report, arguments.triangulate).into())?;
+    let results: Results = with_command(report, arguments.triangulate).into();
+    baselines.print_changes(&results, &mut session.text);
+    baselines.save(&results)?;
+    let code = session.finish(results)?;
     if none_qualifies {
         print_stderr(
             "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the \

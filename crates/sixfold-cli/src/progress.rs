@@ -48,7 +48,9 @@ impl Bar {
     /// Returns a bar whose texts begin with `prefix`, such as `2 of 4: `.
     pub(crate) fn after(prefix: &str) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {prefix}{msg}");
+            let style = ProgressStyle::with_template(
+                "{bar:30} {percent:>3} %  {eta:>3} left  {prefix}{msg}",
+            );
             let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
             let bar = ProgressBar::new(STEPS).with_style(style);
             bar.with_prefix(prefix.to_owned())

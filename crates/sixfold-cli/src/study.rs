@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_results::{BackendReport, Environment, Finding, Report, Run, Timer};
-use sixfold_study::{Settings, StudyError, StudyMesh};
+use sixfold_study::{Operation, Settings, StudyError, StudyMesh};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
+use crate::baselines::Baselines;
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
 use crate::launches::{self, Launch};
@@ -29,7 +30,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         backends: arguments.backends.clone(),
         externals: arguments.externals.clone(),
         external_timeout: arguments.external_timeout,
-        operations: arguments.operations.clone(),
+        operations: arguments.operations.selected(),
         force: arguments.force,
         effort: launch.map_or(effort, |launch| launch.effort(effort)),
         seed: launch.map_or(arguments.seed, |launch| launch.seed(arguments.seed)),
@@ -37,6 +38,9 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         caches: arguments.memory.caches,
         ..Settings::default()
     };
+    if arguments.list {
+        return list(&settings.operations);
+    }
     let several = arguments.meshes.len() > 1 || arguments.meshes.iter().any(|path| path.is_dir());
     if (several || arguments.report.is_some()) && launch.is_none() {
         return many::run(arguments, &settings);
@@ -55,6 +59,18 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     studied
 }
 
+/// Prints the names of the selected operations, or of all.
+fn list(selected: &[Operation]) -> Result<ExitCode, Failure> {
+    let mut text = TextOutput::new(true);
+    for operation in Operation::ALL {
+        if selected.is_empty() || selected.contains(&operation) {
+            text.print_line(operation.name());
+        }
+    }
+    text.finish()?;
+    Ok(ExitCode::SUCCESS)
+}
+
 /// Studies one mesh, or the built-in mesh.
 fn run_single(
     arguments: &Study,
@@ -62,6 +78,7 @@ fn run_single(
     mesh: Option<&Path>,
     paper: Option<&ListedFolder>,
 ) -> Result<ExitCode, Failure> {
+    let baselines = Baselines::open(&arguments.baselines)?;
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = load::mesh_or_built_in(
         mesh,
@@ -90,7 +107,8 @@ fn run_single(
         Ok(report) => {
             print(&report, &mut session.text);
             let mut results = finding(report, arguments).into();
-            let written = session.write(&mut results);
+            baselines.print_changes(&results, &mut session.text);
+            let written = session.write(&mut results).and(baselines.save(&results));
             let written = written.and(paper::write_if(paper, &results, &command_line()));
             exit_code(written, &results, results.is_interrupted())
         }

@@ -25,6 +25,7 @@ mod programs;
 mod remeshing;
 mod render;
 mod repair;
+mod repeating;
 mod reports;
 mod run;
 mod schema;

@@ -10,7 +10,7 @@ use crate::json_csv::parsed;
 use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Objects whose keys are not names of fields.
-const MAPS: [&str; 1] = ["hist"];
+const MAPS: [&str; 2] = ["hist", "tags"];
 
 /// Adds the names of all fields of `value`, at any depth.
 fn add_fields(value: &Value, fields: &mut BTreeSet<String>) {
@@ -35,7 +35,16 @@ fn written_fields() -> BTreeSet<String> {
     sixfold.grid("grid.obj", 12);
     sixfold.file("t.obj", TETRAHEDRON);
     let commands: [&[&str]; 8] = [
-        &["study", "grid.obj", "--rounds", "2", "--launches", "2"],
+        &[
+            "study",
+            "grid.obj",
+            "--rounds",
+            "2",
+            "--launches",
+            "2",
+            "--tag",
+            "a=b",
+        ],
         &["study", "t.obj", "--rounds", "2", "--launches", "2"],
         &["orders", "grid.obj", "--rounds", "2"],
         &["growth", "--to", "2000", "--steps", "3", "--rounds", "2"],

@@ -443,7 +443,7 @@ fn incomplete_results_are_labelled() {
         change("build", "lox", 1.0),
     ]);
     changes.environment = vec![SettingChange {
-        what: "compiler",
+        what: "compiler".into(),
         before: "rustc 1.94".into(),
         after: "rustc 1.95".into(),
     }];
@@ -578,7 +578,7 @@ fn pages_load_nothing_and_names_are_escaped() {
     };
     let mut changes = changes(rows);
     changes.environment = vec![SettingChange {
-        what: "flags",
+        what: "flags".into(),
         before: MARKUP.into(),
         after: String::new(),
     }];

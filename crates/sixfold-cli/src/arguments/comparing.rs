@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use sixfold::shapes::Order;
-use sixfold_study::{GrowthSettings, Operation};
+use sixfold_study::GrowthSettings;
 
-use super::{EffortArgs, MemoryState, ReadFiles, ResultFiles, backend, seed};
+use super::{EffortArgs, MemoryState, OperationArgs, ReadFiles, ResultFiles, backend, seed};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -40,9 +40,8 @@ pub(crate) struct Orders {
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Run these operations instead of the default operations
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    pub(crate) operations: Vec<Operation>,
+    #[command(flatten)]
+    pub(crate) operations: OperationArgs,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
     /// Seed of the order `shuffled` and of random samples
@@ -85,7 +84,7 @@ file that is incomplete, has no results or has another schema version, files wit
 measurement, or files with different --heap or --caches; 3 none is slower, but some cannot be told,
 and --fail-if-slower is given.";
 
-/// Compare two files of results, and show the differences that exceed the noise.
+/// Compare two files of results, and show what became slower or faster beyond chance.
 ///
 /// Compares measurements on two machines, with two compilers or of two commits. Shows which
 /// times are shorter or longer, which backend is now the fastest, and how machines and programs
@@ -118,6 +117,35 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "DIR")]
     pub(crate) figures: Option<PathBuf>,
     /// Write all results as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+const RERUN_EXAMPLES: &str = "Examples:
+  sixfold rerun results.json                        on this machine, with this program
+  sixfold rerun paper/results.json --meshes scans   the meshes are in another folder
+
+Runs the commands that measured the results again, with their settings and on the same meshes, and
+says which conclusions stand. A conclusion is that one backend alone is the fastest: for an
+operation of a study, or for the workload of a pick. It stands if the backend is the fastest again,
+and it is reversed if another one is, beyond chance. Otherwise it cannot be told. A mesh is looked
+for at its path, beside RESULTS.json, and under --meshes; its content must be that of the results.
+
+Exit codes: 0 no conclusion is reversed; 1 a conclusion is reversed, or results differ between
+backends; 2 wrong usage, a file without results, a command that cannot be repeated, or a mesh that
+is missing or has changed; 4 interrupted.";
+
+/// Measure saved results again, and say which conclusions stand.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = RERUN_EXAMPLES)]
+pub(crate) struct Rerun {
+    /// The results: a file of --json, or a folder of --report
+    #[arg(value_name = "RESULTS.json|DIR")]
+    pub(crate) results: PathBuf,
+    /// Look for the meshes in DIR
+    #[arg(long, value_name = "DIR")]
+    pub(crate) meshes: Option<PathBuf>,
+    /// Write the new results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -164,9 +192,8 @@ pub(crate) struct Growth {
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Run these operations instead of the default operations
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    pub(crate) operations: Vec<Operation>,
+    #[command(flatten)]
+    pub(crate) operations: OperationArgs,
     /// Order: given, shuffled, morton, breadth-first
     #[arg(long, value_name = "ORDER", default_value = "given")]
     pub(crate) order: Order,

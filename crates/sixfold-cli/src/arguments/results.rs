@@ -16,6 +16,38 @@ pub(crate) struct ResultFiles {
     /// Write the time of each sample as CSV, one per row (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) samples_csv: Option<PathBuf>,
+    /// Keep KEY=VALUE in the results; may be repeated
+    #[arg(long = "tag", value_name = "KEY=VALUE", value_parser = tag)]
+    pub(crate) tags: Vec<(String, String)>,
+}
+
+/// The results with which new ones are compared.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct BaselineArgs {
+    /// Keep the results as the baseline NAME, in the folder .sixfold
+    #[arg(long, value_name = "NAME", value_parser = baseline_name)]
+    pub(crate) save_baseline: Option<String>,
+    /// Compare the results with the baseline NAME, as `sixfold compare` does
+    #[arg(long, value_name = "NAME", value_parser = baseline_name)]
+    pub(crate) baseline: Option<String>,
+}
+
+/// Parses the name of a baseline, which is the name of a file.
+fn baseline_name(text: &str) -> Result<String, String> {
+    let fits = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    match !text.is_empty() && !text.starts_with('.') && text.chars().all(fits) {
+        true => Ok(text.to_owned()),
+        false => Err("write letters, digits, hyphens, underscores and dots".into()),
+    }
+}
+
+/// Parses a tag such as `machine=laptop`.
+fn tag(text: &str) -> Result<(String, String), String> {
+    let pair = text
+        .split_once('=')
+        .filter(|(key, _)| !key.trim().is_empty());
+    let (key, value) = pair.ok_or("write KEY=VALUE, such as machine=laptop")?;
+    Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
 impl ResultFiles {

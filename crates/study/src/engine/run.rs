@@ -15,6 +15,7 @@ pub fn start_run(settings: RunSettings) -> Run {
         environment: environment(),
         operations: Operation::ALL.map(Operation::info).into(),
         start: start(),
+        ..Run::default()
     }
 }
 
