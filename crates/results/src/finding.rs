@@ -108,6 +108,17 @@ macro_rules! findings {
                 })
             })+
         }
+
+        $(impl TryFrom<Finding> for $finding {
+            type Error = Finding;
+
+            fn try_from(finding: Finding) -> Result<Self, Finding> {
+                match finding {
+                    Finding::$kind(finding) => Ok(*finding),
+                    other => Err(other),
+                }
+            }
+        })+
     };
 }
 

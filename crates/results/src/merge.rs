@@ -165,10 +165,12 @@ fn samples(finding: &Finding) -> Vec<Option<&Samples>> {
 
 impl Finding {
     /// Returns whether this finding and `other` measured the same, so that they can be pooled as launches: studies of
-    /// one mesh, or picks for one workload on the same meshes, by their names.
+    /// one mesh, its orders, the growth of one shape, or picks for one workload on the same meshes, by their names.
     pub fn repeats(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Study(a), Self::Study(b)) => a.mesh.name == b.mesh.name,
+            (Self::Orders(a), Self::Orders(b)) => a.mesh.name == b.mesh.name,
+            (Self::Growth(a), Self::Growth(b)) => (&a.shape, &a.order) == (&b.shape, &b.order),
             (Self::Pick(a), Self::Pick(b)) => {
                 let names = |pick: &PickReport| -> Vec<String> {
                     pick.meshes.iter().map(|mesh| mesh.name.clone()).collect()

@@ -1,7 +1,7 @@
 //! `sixfold growth`: measures how times grow with the size of the mesh.
 
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use comfy_table::Cell;
 use sixfold_results::{Fit, GrowthReport, ResultRow, SizeReport, Slope};
@@ -12,6 +12,7 @@ use sixfold_study::{
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
+use crate::launches;
 use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::default_operations;
@@ -29,7 +30,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
             backends: arguments.backends.clone(),
             operations: arguments.operations.selected(),
             effort: arguments.effort.effort(),
-            seed: arguments.seed,
+            seed: launches::seed(arguments.seed),
             heap: arguments.memory.heap,
             caches: arguments.memory.caches,
             ..Settings::default()
@@ -43,7 +44,23 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     warn_of_debug_build();
     check_memory(&settings)?;
     print_before_measuring(&settings, &mut session.text);
-    let report = measure(&settings, &session.stop, &Bar::new())?;
+    // A size that cannot be planned is refused by the measurement.
+    let sizes = sixfold_study::growth_plan(&settings).map_or_else(|_| Vec::new(), |plan| plan.0);
+    let (given, effort) = (arguments.launching.launches, settings.study.effort);
+    let report = match launches::count(given, effort, [], sizes.iter().sum())? {
+        1 => measure(&settings, &session.stop, &Bar::new())?,
+        count => {
+            let bar = Bar::new();
+            let show = |done: f64, what: &str| bar.set(done, what);
+            let report: Result<GrowthReport, Failure> =
+                launches::measure(count, effort, None, &session.stop, &show);
+            bar.clear();
+            let interrupted = session.stop.load(Ordering::Relaxed);
+            let mut report = report?;
+            report.interrupted |= interrupted;
+            report
+        }
+    };
     print(&report, &mut session.text);
     session.finish(with_command(report, false).into())
 }

@@ -18,8 +18,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use sixfold_results::Results;
 use sixfold_results::numbers::counted;
+use sixfold_results::{Finding, Results};
 use sixfold_study::{Effort, LAUNCH_VARIABLE, pool_launches};
 
 use crate::failure::Failure;
@@ -84,7 +84,7 @@ impl Launch {
 
     /// Returns the seed of this launch, if that of the command is `seed`: each launch has its own order of entries
     /// and its own samples of elements.
-    pub(crate) fn seed(&self, seed: u64) -> u64 {
+    fn seed(&self, seed: u64) -> u64 {
         seed.wrapping_add(u64::from(self.number))
     }
 
@@ -96,6 +96,11 @@ impl Launch {
             stop.store(true, Ordering::Relaxed);
         });
     }
+}
+
+/// Returns the seed of this process, if that of the command is `seed`.
+pub(crate) fn seed(seed: u64) -> u64 {
+    Launch::current().map_or(seed, |launch| launch.seed(seed))
 }
 
 /// Returns the number of launches of a command that measures `effort` on the meshes `paths` with `faces` faces
@@ -152,7 +157,7 @@ pub(crate) fn count<'p>(
 /// # Errors
 ///
 /// Returns the failure of the first launch if it refuses to measure, or if no launch has a document.
-pub(crate) fn run(
+fn run(
     count: u32,
     effort: Effort,
     mesh: Option<&str>,
@@ -210,8 +215,30 @@ pub(crate) fn run(
     }
 }
 
+/// Runs `count` launches of a command with one finding, and pools them, see [`run`]. Without launches, `count` is 1.
+///
+/// # Errors
+///
+/// Returns the errors of [`run`], and an error if the command was interrupted before the first result.
+pub(crate) fn measure<T: TryFrom<Finding>>(
+    count: u32,
+    effort: Effort,
+    mesh: Option<&str>,
+    stop: &AtomicBool,
+    show: &dyn Fn(f64, &str),
+) -> Result<T, Failure> {
+    let results = run(count, effort, mesh, stop, show)?;
+    let mut findings = results.findings.into_iter();
+    let found = findings.find_map(|mut finding| {
+        let run = finding.run_mut();
+        run.settings.budget_s = effort.run_settings().budget_s;
+        T::try_from(finding).ok()
+    });
+    found.ok_or_else(interrupted_early)
+}
+
 /// Returns the failure of a command that was interrupted before its first launch had a result.
-pub(crate) fn interrupted_early() -> Failure {
+fn interrupted_early() -> Failure {
     Failure::usage("interrupted before the first result")
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
-use sixfold_results::{BreakEven, Finding, OwnBytes, OwnData, PickReport, Ranked, Results};
+use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked, Results};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
@@ -14,7 +14,7 @@ use crate::arguments::{Pick, ReadFiles};
 use crate::baselines::Baselines;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::launches::{self, Launch};
+use crate::launches;
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -40,7 +40,6 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
     let study_meshes: Vec<StudyMesh> = drawn.collect();
-    let launch = Launch::current();
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
@@ -48,7 +47,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         needs: arguments.needs.clone(),
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
-        seed: launch.map_or(arguments.seed, |launch| launch.seed(arguments.seed)),
+        seed: launches::seed(arguments.seed),
         heap: arguments.heap,
     };
     let count = launches::count(
@@ -96,16 +95,7 @@ fn measure(
         return report.map_err(Failure::usage);
     }
     let show = |done: f64, what: &str| bar.set(done, what);
-    let results = launches::run(launches, settings.effort, None, stop, &show)?;
-    let mut picks = results
-        .findings
-        .into_iter()
-        .filter_map(|finding| match finding {
-            Finding::Pick(report) => Some(*report),
-            _ => None,
-        });
-    let mut report = picks.next().ok_or_else(launches::interrupted_early)?;
-    report.run.settings.budget_s = settings.effort.run_settings().budget_s;
+    let mut report: PickReport = launches::measure(launches, settings.effort, None, stop, &show)?;
     report.meshes = study_meshes.iter().map(StudyMesh::report).collect();
     report.interrupted |= stop.load(Ordering::Relaxed);
     Ok(report)

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         operations: arguments.operations.selected(),
         force: arguments.force,
         effort: launch.map_or(effort, |launch| launch.effort(effort)),
-        seed: launch.map_or(arguments.seed, |launch| launch.seed(arguments.seed)),
+        seed: launches::seed(arguments.seed),
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,
         ..Settings::default()
@@ -141,16 +141,7 @@ pub(crate) fn measure(
             error => Failure::usage(error),
         });
     }
-    let results = launches::run(launches, settings.effort, name, stop, show)?;
-    let report = results
-        .findings
-        .into_iter()
-        .find_map(|finding| match finding {
-            Finding::Study(report) => Some(*report),
-            _ => None,
-        });
-    let mut report = report.ok_or_else(launches::interrupted_early)?;
-    report.run.settings.budget_s = settings.run_settings().budget_s;
+    let mut report: Report = launches::measure(launches, settings.effort, name, stop, show)?;
     report.mesh = study_mesh.report();
     // An interruption between two launches is in none of them.
     report.interrupted |= stop.load(Ordering::Relaxed);

@@ -515,3 +515,70 @@ fn what_is_forced_is_run_whatever_it_takes() {
     assert!(!study(&[]), "the budget holds");
     assert!(study(&["--force"]));
 }
+
+/// Returns the number of times of each row in the launches.
+fn counts(rows: &Value) -> Vec<usize> {
+    let rows = rows.as_array().expect("rows").iter();
+    let launches = rows.map(|row| row["launch_ns"].as_array().expect("several launches"));
+    launches.map(Vec::len).collect()
+}
+
+#[test]
+fn orders_and_growth_are_measured_in_launches() {
+    let sixfold = with_grid();
+    let measure = |command: &[&'static str], name: &'static str| {
+        let options = [
+            "--operations",
+            "vertex_faces",
+            "--backends",
+            "half-edge,face-vertex",
+        ];
+        let effort = ["--rounds", "2", "--launches", "3", "--json", name];
+        let run = run_ok(&sixfold, &[command, &options, &effort].concat());
+        let words = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("means over 3 launches"), "{words}");
+        document(&sixfold, name)
+    };
+    let orders = measure(&["orders", "grid.obj"], "orders.json");
+    let finding = &orders["findings"][0];
+    assert_eq!(counts(&finding["results"]), vec![3; 8]);
+    assert_eq!(finding["results"][0]["case"], "given");
+    let [comparison] = &finding["comparisons"].as_array().expect("comparisons")[..] else {
+        panic!("{finding}")
+    };
+    let effects = comparison["orders"].as_array().expect("effects");
+    assert_eq!(effects.len(), 2);
+    for effect in effects {
+        let factor = &effect["worst_to_best"];
+        assert!(
+            factor["ci_low"].as_f64() <= factor["ratio"].as_f64(),
+            "{effect}"
+        );
+    }
+    assert!(comparison["structures"]["slowest_to_fastest"]["ci_high"].is_f64());
+    assert_eq!(orders["runs"][0]["settings"]["launches"], 3);
+
+    let growth = measure(&["growth", "--to", "4000", "--steps", "3"], "growth.json");
+    let finding = &growth["findings"][0];
+    let sizes = finding["sizes"].as_array().expect("sizes");
+    assert_eq!(sizes.len(), 3);
+    for size in sizes {
+        assert_eq!(counts(&size["results"]), vec![3; 2]);
+        assert_eq!(
+            size["control"]["operations"][0]["launches"]
+                .as_array()
+                .map(Vec::len),
+            Some(3)
+        );
+    }
+    let fits = finding["fits"].as_array().expect("fitted lines");
+    assert!(
+        fits.len() == 2 && fits[0]["all"]["exponent"].is_f64(),
+        "{fits:?}"
+    );
+    // The page shows them.
+    run_ok(
+        &sixfold,
+        &["report", "orders.json", "growth.json", "--to", "page"],
+    );
+}

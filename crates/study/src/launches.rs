@@ -1,9 +1,11 @@
 //! Pools the documents of several launches: fresh processes that measured the same.
 
 use sixfold_results::launches::{LaunchRows, pool_rows};
-use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Results, Timer};
+use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Results, Run, Timer};
 use sixfold_workload::{Backend, Operation};
 
+use crate::labs::growth::pool_growth;
+use crate::labs::orders::pool_orders;
 use crate::labs::pick::pool_picks;
 use crate::labs::study::conclude;
 
@@ -14,7 +16,8 @@ pub const LAUNCH_VARIABLE: &str = "SIXFOLD_LAUNCH";
 /// Pools documents of the same work, one for each launch, as one document. Documents that were pooled before
 /// add all of their launches.
 ///
-/// Studies of the same mesh become one study, and picks for the same workload one pick, see
+/// Studies of the same mesh become one study, and picks for the same workload one pick; the same holds for orders of
+/// a mesh and growth of a shape, see
 /// [`pool_rows`](sixfold_results::launches::pool_rows()). A mesh that failed in some launches has a study
 /// of the others.
 ///
@@ -48,19 +51,27 @@ pub fn pool_launches(launches: Vec<Results>) -> Result<Results, MergeError> {
 
 /// Pools findings that repeat each other.
 fn pool_group(group: Vec<Finding>) -> Option<Finding> {
-    let (mut studies, mut picks) = (Vec::new(), Vec::new());
-    for finding in group {
-        match finding {
-            Finding::Study(study) => studies.push(*study),
-            Finding::Pick(pick) => picks.push(*pick),
-            other => return Some(other),
-        }
+    match group.first()? {
+        Finding::Study(_) => Some(pool_studies(all(group)).into()),
+        Finding::Pick(_) => Some(pool_picks(all(group)).into()),
+        Finding::Orders(_) => Some(pool_orders(all(group)).into()),
+        Finding::Growth(_) => Some(pool_growth(all(group)).into()),
+        _ => group.into_iter().next(),
     }
-    match (studies.is_empty(), picks.is_empty()) {
-        (false, _) => Some(pool_studies(studies).into()),
-        (true, false) => Some(pool_picks(picks).into()),
-        (true, true) => None,
-    }
+}
+
+/// Returns the findings of one kind.
+fn all<T: TryFrom<Finding>>(findings: Vec<Finding>) -> Vec<T> {
+    let found = findings.into_iter().map(T::try_from);
+    found.filter_map(Result::ok).collect()
+}
+
+/// Returns the run of several launches.
+pub(crate) fn pool_runs<'r>(runs: impl IntoIterator<Item = &'r Run>) -> Run {
+    let mut runs = runs.into_iter();
+    let mut pooled = runs.next().cloned().unwrap_or_default();
+    runs.for_each(|run| pooled.add_launches(run));
+    pooled
 }
 
 /// Pools the studies of one mesh.
@@ -74,7 +85,7 @@ fn pool_studies(mut launches: Vec<Report>) -> Report {
     pooled.results.sort_by_key(|row| place(row, &backends));
     let first = &launches[0];
     let mut report = Report {
-        run: first.run.clone(),
+        run: pool_runs(launches.iter().map(|launch| &launch.run)),
         mesh: first.mesh.clone(),
         backends,
         results: pooled.results,
@@ -85,9 +96,6 @@ fn pool_studies(mut launches: Vec<Report>) -> Report {
         timer: pool_timers(launches.iter().filter_map(|launch| launch.timer)),
         ..Report::default()
     };
-    for launch in &launches[1..] {
-        report.run.add_launches(&launch.run);
-    }
     conclude(&mut report, &Backend::structures());
     report
 }
@@ -118,7 +126,7 @@ fn pool_backends(launches: &[Report]) -> Vec<BackendReport> {
 }
 
 /// Returns the clock with the largest error.
-fn pool_timers(timers: impl Iterator<Item = Timer>) -> Option<Timer> {
+pub(crate) fn pool_timers(timers: impl Iterator<Item = Timer>) -> Option<Timer> {
     let share = |timer: &Timer| timer.largest_share.unwrap_or(0.0);
     timers.max_by(|a, b| share(a).total_cmp(&share(b)))
 }

@@ -6,6 +6,7 @@ use super::slope::Slope;
 use crate::environment::Cache;
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
+use crate::launches::LaunchRows;
 use crate::read::ReadError;
 use crate::rows::{BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples};
 use crate::run::Run;
@@ -71,6 +72,18 @@ pub struct SizeReport {
     /// The comparison of two measurements of one backend, which shows the noise. `None` if no
     /// backend was measured twice.
     pub control: Option<Control>,
+}
+
+impl SizeReport {
+    /// Returns the rows of this launch, for [`pool_rows`](crate::launches::pool_rows()).
+    pub fn launch_rows(&self) -> LaunchRows<'_> {
+        LaunchRows {
+            results: &self.results,
+            refusals: &self.refusals,
+            samples: &self.samples,
+            control: self.control.as_ref(),
+        }
+    }
 }
 
 /// The size of a backend in bytes.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
+use crate::launches::LaunchRows;
 use crate::read::ReadError;
 use crate::rows::{BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, bytes_of};
 use crate::run::Run;
@@ -53,6 +54,16 @@ impl OrdersReport {
     pub fn rows(&self, operation: &str) -> impl Iterator<Item = &ResultRow> {
         let of_it = move |row: &&ResultRow| row.operation == operation;
         self.results.iter().filter(of_it)
+    }
+
+    /// Returns the rows of this launch, for [`pool_rows`](crate::launches::pool_rows()).
+    pub fn launch_rows(&self) -> LaunchRows<'_> {
+        LaunchRows {
+            results: &self.results,
+            refusals: &self.refusals,
+            samples: &self.samples,
+            control: self.control.as_ref(),
+        }
     }
 
     fn all_rows(&self) -> Rows<'_> {

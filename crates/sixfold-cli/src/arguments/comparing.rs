@@ -6,7 +6,9 @@ use clap::Args;
 use sixfold::shapes::Order;
 use sixfold_study::GrowthSettings;
 
-use super::{EffortArgs, MemoryState, OperationArgs, ReadFiles, ResultFiles, backend, seed};
+use super::{
+    EffortArgs, LaunchArgs, MemoryState, OperationArgs, ReadFiles, ResultFiles, backend, seed,
+};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -44,6 +46,8 @@ pub(crate) struct Orders {
     pub(crate) operations: OperationArgs,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -199,6 +203,8 @@ pub(crate) struct Growth {
     pub(crate) order: Order,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,

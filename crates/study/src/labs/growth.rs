@@ -31,16 +31,18 @@ use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, scans};
+use crate::launches::{pool_runs, pool_timers};
 use crate::refusal::BuildInput;
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
 use settings::Plan;
+use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::{
     BackendBytes, BackendRefusal, Cache, CacheLimit, Fit, GrowthReport, MeshReport, ResultRow,
     Samples, SizeReport, last_level_bytes,
 };
 use sixfold_workload::caches;
-use sixfold_workload::{Backend, Draw, MachineClock, TimedBackend};
+use sixfold_workload::{Backend, Draw, MachineClock, Operation, TimedBackend};
 
 /// Measures a shape in several sizes, within the time budget of `settings`. A size is left out if
 /// the structures of this size cannot be built in the remaining time.
@@ -135,25 +137,12 @@ pub(crate) fn growth_on(
                 .all(|other| other.backend != b.name())
         })
         .collect();
-    let fits = fits(
-        &sizes,
-        &backends,
-        &plan.operations,
-        last_level_bytes(&caches),
-    );
     let cache_limits = sweep
         .counts
         .map_or_else(Vec::new, |counts| cache_limits(&backends, &counts, &caches));
-    let mut sentences = sentences::sentences(&sizes, &fits, &caches, &cache_limits);
-    sentences.extend(sentences::left_out(&left_out));
     let run = sweep.bench.run();
     let timer = sweep.bench.timer(sweep.shortest_ns);
-    let rows: Vec<&ResultRow> = sizes.iter().flat_map(|size| &size.results).collect();
-    let noisiest = sizes.iter().filter_map(|size| size.control.as_ref());
-    let noisiest = noisiest.max_by(|a, b| a.typical.total_cmp(&b.typical));
-    let samples: Vec<&Samples> = sizes.iter().flat_map(|size| &size.samples).collect();
-    let warnings = warnings(&run, &timer, &rows, &samples, noisiest);
-    Ok(GrowthReport {
+    let mut report = GrowthReport {
         run,
         meshes,
         shape: settings.shape.clone(),
@@ -162,14 +151,79 @@ pub(crate) fn growth_on(
         refused_by: sweep.refused_by,
         sizes,
         left_out,
-        fits,
+        fits: Vec::new(),
         cache_limits,
         caches,
-        sentences,
-        warnings,
+        sentences: Vec::new(),
+        warnings: Vec::new(),
         interrupted,
         timer,
-    })
+    };
+    conclude(&mut report, &backends, &plan.operations);
+    Ok(report)
+}
+
+/// Adds the fitted lines, the sentences and the warnings.
+fn conclude(report: &mut GrowthReport, backends: &[&Backend], operations: &[Operation]) {
+    let GrowthReport { sizes, caches, .. } = &*report;
+    let fits = fits(sizes, backends, operations, last_level_bytes(caches));
+    let mut sentences = sentences::sentences(sizes, &fits, caches, &report.cache_limits);
+    sentences.extend(sentences::left_out(&report.left_out));
+    let rows: Vec<&ResultRow> = sizes.iter().flat_map(|size| &size.results).collect();
+    let noisiest = sizes.iter().filter_map(|size| size.control.as_ref());
+    let noisiest = noisiest.max_by(|a, b| a.typical.total_cmp(&b.typical));
+    let samples: Vec<&Samples> = sizes.iter().flat_map(|size| &size.samples).collect();
+    let warnings = warnings(&report.run, &report.timer, &rows, &samples, noisiest);
+    (report.fits, report.sentences, report.warnings) = (fits, sentences, warnings);
+}
+
+/// Pools the sizes of one shape, measured in several launches. A size that some launches did not reach has the times of
+/// the others.
+pub(crate) fn pool_growth(mut launches: Vec<GrowthReport>) -> GrowthReport {
+    if launches.len() == 1 {
+        return launches.remove(0);
+    }
+    let farthest = launches.iter().max_by_key(|launch| launch.sizes.len());
+    let Some(farthest) = farthest.cloned() else {
+        return launches.remove(0);
+    };
+    let sizes = farthest.sizes.iter().map(|size| {
+        let same = |other: &&SizeReport| other.faces == size.faces;
+        let of_each = launches
+            .iter()
+            .filter_map(|launch| launch.sizes.iter().find(same));
+        let rows: Vec<LaunchRows<'_>> = of_each.map(SizeReport::launch_rows).collect();
+        let pooled = pool_rows(&rows, |row| row.operation.clone());
+        SizeReport {
+            results: pooled.results,
+            refusals: pooled.refusals,
+            samples: pooled.samples,
+            control: pooled.control,
+            ..size.clone()
+        }
+    });
+    let sizes: Vec<SizeReport> = sizes.collect();
+    let structures = Backend::structures();
+    let backends = farthest.backends.iter().filter_map(|name| {
+        let mut structures = structures.iter();
+        structures.find(|structure| structure.name() == name)
+    });
+    let backends: Vec<&Backend> = backends.collect();
+    let is_measured = |operation: &Operation| {
+        let mut rows = sizes.iter().flat_map(|size| &size.results);
+        rows.any(|row| row.operation == operation.name())
+    };
+    let operations: Vec<Operation> = Operation::ALL.into_iter().filter(is_measured).collect();
+    let timers = launches.iter().map(|launch| launch.timer);
+    let mut report = GrowthReport {
+        run: pool_runs(launches.iter().map(|launch| &launch.run)),
+        timer: pool_timers(timers).unwrap_or(farthest.timer),
+        interrupted: launches.iter().any(|launch| launch.interrupted),
+        sizes,
+        ..farthest
+    };
+    conclude(&mut report, &backends, &operations);
+    report
 }
 
 struct Sweep<'s> {

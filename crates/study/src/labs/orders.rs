@@ -22,11 +22,13 @@ use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
+use crate::launches::{pool_runs, pool_timers};
 
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, scans};
 use crate::refusal::BuildInput;
-use effects::{OrderSamples, comparison};
+use effects::{OrderTime, Values, comparison};
 use meshes::OrderedMeshes;
+use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::{Comparison, OrdersReport, Refusal, ResultRow, Samples, noise};
 use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
 
@@ -150,14 +152,14 @@ pub(crate) fn orders_on(
     let timed = |operation: Operation| {
         let all = measured.entries.iter().zip(&measured.times);
         let of_it = all.filter(|(entry, _)| entry.operation() == Some(operation));
-        let timed = of_it.map(|(entry, &ns)| OrderSamples {
+        let timed = of_it.map(|(entry, &ns)| OrderTime {
             backend: columns[entry.subject].backend.name(),
             order: columns[entry.subject].order,
             scans: operation.scans(&columns[entry.subject].backend.info.costs) != [false; 3],
-            samples: entry.times(),
+            values: Values::Rounds(entry.times()),
             ns,
         });
-        let timed: Vec<OrderSamples> = timed.collect();
+        let timed: Vec<OrderTime<'_>> = timed.collect();
         comparison(operation, &timed, noise(control, operation.name()))
     };
     let comparisons: Vec<Comparison> = operations.into_iter().map(timed).collect();
@@ -167,8 +169,8 @@ pub(crate) fn orders_on(
         mesh: study_mesh.report(),
         orders: Order::ALL.map(|order| order.to_string()).into(),
         backends,
-        sentences: sentences::sentences(&results, &comparisons, control),
-        warnings: sentences::mismatches(&results).collect(),
+        sentences: Vec::new(),
+        warnings: Vec::new(),
         samples: measured.samples(),
         results,
         refusals: deduplicated(measured.refusals()),
@@ -177,12 +179,72 @@ pub(crate) fn orders_on(
         control: measured.control,
         timer,
     };
+    conclude(&mut report);
+    Ok(report)
+}
+
+/// Adds the sentences and the warnings.
+fn conclude(report: &mut OrdersReport) {
+    let control = report.control.as_ref();
+    report.sentences = sentences::sentences(&report.results, &report.comparisons, control);
+    report.warnings = sentences::mismatches(&report.results).collect();
     let rows: Vec<&ResultRow> = report.results.iter().collect();
     let samples: Vec<&Samples> = report.samples.iter().collect();
-    let control = report.control.as_ref();
-    let measured = warnings(&report.run, &timer, &rows, &samples, control);
+    let measured = warnings(&report.run, &report.timer, &rows, &samples, control);
     report.warnings.extend(measured);
-    Ok(report)
+}
+
+/// Pools the orders of one mesh, measured in several launches.
+pub(crate) fn pool_orders(mut launches: Vec<OrdersReport>) -> OrdersReport {
+    if launches.len() == 1 {
+        return launches.remove(0);
+    }
+    let rows: Vec<LaunchRows<'_>> = launches.iter().map(OrdersReport::launch_rows).collect();
+    // A row is compared with the other orders of its structure.
+    let pooled = pool_rows(&rows, |row| (row.operation.clone(), row.backend.clone()));
+    let structures = Backend::structures();
+    let compared = |operation: Operation| {
+        let of_it = pooled
+            .results
+            .iter()
+            .filter(|row| row.operation == operation.name());
+        let timed = of_it.filter_map(|row| {
+            let structure = structures.iter().find(|known| known.name() == row.backend);
+            Some(OrderTime {
+                backend: &row.backend,
+                order: row.case.parse().ok()?,
+                scans: structure.is_some_and(|s| operation.scans(&s.info.costs) != [false; 3]),
+                values: Values::Launches(&row.launch_ns),
+                ns: row.median_ns,
+            })
+        });
+        let mut timed: Vec<OrderTime<'_>> = timed.collect();
+        // Those of one structure are adjacent.
+        timed.sort_by_key(|time| structures.iter().position(|s| s.name() == time.backend));
+        comparison(
+            operation,
+            &timed,
+            noise(pooled.control.as_ref(), operation.name()),
+        )
+    };
+    let known = launches[0].comparisons.iter();
+    let operations = known.filter_map(|known| known.operation.parse().ok());
+    let comparisons: Vec<Comparison> = operations.map(compared).collect();
+    let timers = launches.iter().map(|launch| launch.timer);
+    let first = &launches[0];
+    let mut report = OrdersReport {
+        run: pool_runs(launches.iter().map(|launch| &launch.run)),
+        timer: pool_timers(timers).unwrap_or(first.timer),
+        interrupted: launches.iter().any(|launch| launch.interrupted),
+        comparisons,
+        results: pooled.results,
+        refusals: pooled.refusals,
+        samples: pooled.samples,
+        control: pooled.control,
+        ..first.clone()
+    };
+    conclude(&mut report);
+    report
 }
 
 #[derive(Clone, Copy)]

@@ -2,23 +2,40 @@
 
 use sixfold::shapes::Order;
 
+use sixfold_results::launches::ratio_over_launches;
 use sixfold_results::ranking::quotient;
 use sixfold_results::{Comparison, Factor, Larger, OrderEffect, StructureEffect, Time};
 use sixfold_workload::Operation;
 
-pub(super) struct OrderSamples {
-    pub(super) backend: &'static str,
+/// The time of one operation on one structure in one order.
+pub(super) struct OrderTime<'t> {
+    pub(super) backend: &'t str,
     pub(super) order: Order,
     /// Whether the structure scans all faces for each element.
     pub(super) scans: bool,
-    pub(super) samples: Vec<(u32, Time)>,
-    /// The corrected time; `None` without samples.
+    pub(super) values: Values<'t>,
+    /// The corrected time; `None` without values.
     pub(super) ns: Option<f64>,
 }
 
+/// What the ratio of two times is formed from.
+pub(super) enum Values<'t> {
+    /// The samples of one launch, with their rounds.
+    Rounds(Vec<(u32, Time)>),
+    /// The time in each launch.
+    Launches(&'t [Option<f64>]),
+}
+
 /// Returns the quotient of two times; `None` if one is unknown.
-fn factor(slow: &OrderSamples, fast: &OrderSamples) -> Option<Factor> {
-    let ratio = quotient([&slow.samples, &fast.samples], [slow.ns?, fast.ns?])?;
+fn factor(slow: &OrderTime<'_>, fast: &OrderTime<'_>) -> Option<Factor> {
+    let times = [slow.ns?, fast.ns?];
+    let ratio = match (&slow.values, &fast.values) {
+        (Values::Rounds(slow), Values::Rounds(fast)) => quotient([slow, fast], times)?,
+        (Values::Launches(slow), Values::Launches(fast)) => {
+            ratio_over_launches(times, [slow, fast])?
+        }
+        _ => return None,
+    };
     Some(Factor {
         ratio: ratio.value,
         ci_low: ratio.interval.map(|[low, _]| low),
@@ -27,14 +44,14 @@ fn factor(slow: &OrderSamples, fast: &OrderSamples) -> Option<Factor> {
 }
 
 /// Compares the orders and the structures in one operation.
-pub(super) fn comparison(operation: Operation, timed: &[OrderSamples], noise: f64) -> Comparison {
-    let same_backend = |a: &OrderSamples, b: &OrderSamples| a.backend == b.backend;
+pub(super) fn comparison(operation: Operation, timed: &[OrderTime<'_>], noise: f64) -> Comparison {
+    let same_backend = |a: &OrderTime<'_>, b: &OrderTime<'_>| a.backend == b.backend;
     let by_backend = || timed.chunk_by(same_backend);
     let orders: Vec<OrderEffect> = by_backend()
         .filter_map(|orders| order_effect(orders, noise))
         .collect();
     let local = by_backend().filter(|orders| !orders[0].scans);
-    let best: Vec<&OrderSamples> = local
+    let best: Vec<&OrderTime<'_>> = local
         .filter_map(|orders| Some(extremes(orders)?.0))
         .collect();
     let structures = structure_effect(&best, noise);
@@ -52,19 +69,19 @@ pub(super) fn comparison(operation: Operation, timed: &[OrderSamples], noise: f6
     }
 }
 
-/// Returns the samples with the smallest and the largest time.
-fn extremes<'t>(
-    timed: impl IntoIterator<Item = &'t OrderSamples>,
-) -> Option<(&'t OrderSamples, &'t OrderSamples)> {
+/// Returns the smallest and the largest time.
+fn extremes<'t, 'v: 't>(
+    timed: impl IntoIterator<Item = &'t OrderTime<'v>>,
+) -> Option<(&'t OrderTime<'v>, &'t OrderTime<'v>)> {
     let measured = timed.into_iter().filter_map(|t| Some((t.ns?, t)));
-    let mut sorted: Vec<(f64, &OrderSamples)> = measured.collect();
+    let mut sorted: Vec<(f64, &OrderTime<'_>)> = measured.collect();
     sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     Some((sorted.first()?.1, sorted.last()?.1))
 }
 
-fn order_effect(orders: &[OrderSamples], noise: f64) -> Option<OrderEffect> {
+fn order_effect(orders: &[OrderTime<'_>], noise: f64) -> Option<OrderEffect> {
     let (best, worst) = extremes(orders)?;
-    if orders.iter().filter(|t| !t.samples.is_empty()).count() < 2 {
+    if orders.iter().filter(|t| t.ns.is_some()).count() < 2 {
         return None;
     }
     let worst_to_best = factor(worst, best)?;
@@ -80,7 +97,7 @@ fn order_effect(orders: &[OrderSamples], noise: f64) -> Option<OrderEffect> {
     })
 }
 
-fn structure_effect(best: &[&OrderSamples], noise: f64) -> Option<StructureEffect> {
+fn structure_effect(best: &[&OrderTime<'_>], noise: f64) -> Option<StructureEffect> {
     let (fastest, slowest) = extremes(best.iter().copied())?;
     if best.len() < 2 {
         return None;
@@ -116,18 +133,18 @@ fn larger(orders: &[Factor], structures: &Factor) -> Option<Larger> {
 mod tests {
     use super::*;
 
-    fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> OrderSamples {
+    fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> OrderTime<'static> {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let time = |drift: f64| Time {
             cpu_ns: Some(ns * drift),
             wall_ns: ns * drift,
             faults: None,
         };
-        OrderSamples {
+        OrderTime {
             backend,
             order,
             scans,
-            samples: (0..).zip(drift.map(time)).collect(),
+            values: Values::Rounds((0..).zip(drift.map(time)).collect()),
             ns: Some(ns * 2.0), // the median of the drift
         }
     }
@@ -141,7 +158,7 @@ mod tests {
                     timed(backend, Order::Shuffled, shuffled, scans),
                 ]
             });
-        let timed: Vec<OrderSamples> = timed.collect();
+        let timed: Vec<OrderTime<'_>> = timed.collect();
         comparison(Operation::Boundary, &timed, 1.02)
     }
 
@@ -200,12 +217,38 @@ mod tests {
             timed("a", Order::Given, 10.0, false),
             timed("a", Order::Morton, 14.0, false),
         ];
-        a.iter_mut().for_each(|t| t.samples.truncate(2));
+        for time in &mut a {
+            let Values::Rounds(rounds) = &mut time.values else {
+                panic!("samples")
+            };
+            rounds.truncate(2);
+        }
         let effect = order_effect(&a, 1.02).expect("two orders");
         assert_eq!(effect.worst_to_best.ci_low, None);
         assert!(!effect.matters, "{effect:?}");
-        a[1].samples.clear();
         a[1].ns = None;
         assert_eq!(super::order_effect(&a, 1.02), None);
+    }
+
+    #[test]
+    fn times_over_launches_are_compared_within_launches() {
+        let launches = [[10.0, 20.0, 15.0], [15.0, 30.0, 22.6]].map(|times| times.map(Some));
+        let time = |i: usize, order| OrderTime {
+            backend: "a",
+            order,
+            scans: false,
+            values: Values::Launches(&launches[i]),
+            ns: Some([14.4, 21.6][i]),
+        };
+        let both = [time(0, Order::Given), time(1, Order::Shuffled)];
+        let effect = order_effect(&both, 1.02).expect("two orders");
+        let Factor { ratio, ci_low, .. } = effect.worst_to_best;
+        assert!((ratio - 1.5).abs() < 1e-9 && effect.matters, "{effect:?}");
+        assert!(
+            ci_low.is_some_and(|low| (1.4..1.5).contains(&low)),
+            "{effect:?}"
+        );
+        let other = timed("a", Order::Morton, 10.0, false);
+        assert_eq!(factor(&both[0], &other), None);
     }
 }

@@ -9,6 +9,7 @@ use sixfold_results::{
 use crate::labs::pick::break_even::break_even_over_launches;
 use crate::labs::pick::measurement::MeshOutcome;
 use crate::labs::pick::pooled::{Question, pooled};
+use crate::launches::{pool_runs, pool_timers};
 
 /// Pools picks for the same workload or program on the same meshes, one from each launch. A launch gives one
 /// value for each time, see [`pool_rows`](sixfold_results::launches::pool_rows()); the ranking, the choice and the
@@ -31,12 +32,8 @@ pub(crate) fn pool_picks(mut launches: Vec<PickReport>) -> PickReport {
     });
     let outcomes: Vec<MeshOutcome> = outcomes.flatten().collect();
     let first = &launches[0];
-    let mut run = first.run.clone();
-    for launch in &launches[1..] {
-        run.add_launches(&launch.run);
-    }
-    let timers = launches.iter().map(|launch| launch.timer);
-    let timer = timers.max_by(|a, b| a.uncertainty_ns.total_cmp(&b.uncertainty_ns));
+    let run = pool_runs(launches.iter().map(|launch| &launch.run));
+    let timer = pool_timers(launches.iter().map(|launch| launch.timer));
     let question = Question {
         workload: first.workload.clone(),
         program: first.program.clone(),
