@@ -559,7 +559,7 @@ def check_changes(figures, changes):
     """Compares the figures of a comparison with its rows."""
     divisor = changes["overall"] if changes["relative"] else 1
     rows = changes["rows"]
-    changed = [row for row in rows if row["other_checksum"] or row["verdict"] != "same"]
+    changed = [row for row in rows if row["other_checksum"] or row["verdict"] in ("faster", "slower")]
     changed.sort(key=lambda row: (row["other_checksum"], -abs(math.log(row["ratio"] / divisor))))
     same_work = [row for row in rows if not row["other_checksum"]]
     backends = list(dict.fromkeys(row["backend"] for row in same_work))

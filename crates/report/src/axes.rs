@@ -185,6 +185,11 @@ mod tests {
             ..scale
         };
         assert_eq!(close.ticks(), [1.0, 2.0, 5.0, 10.0, 20.0]);
+        let two_decades = LogScale {
+            values: [1.0, 100.0],
+            ..scale
+        };
+        assert_eq!(two_decades.ticks(), [1.0, 10.0, 100.0]);
         let wide = LogScale {
             values: [1.0, 1e16],
             ..scale

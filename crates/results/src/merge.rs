@@ -165,11 +165,14 @@ fn samples(finding: &Finding) -> Vec<Option<&Samples>> {
 
 impl Finding {
     /// Returns whether this finding and `other` measured the same, so that they can be pooled as launches: studies of
-    /// one mesh, its orders, the growth of one shape, or picks for one workload on the same meshes, by their names.
+    /// one mesh, its orders or searches in it, the growth of one shape, or picks for one workload on the same meshes, by their names.
     pub fn repeats(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Study(a), Self::Study(b)) => a.mesh.name == b.mesh.name,
             (Self::Orders(a), Self::Orders(b)) => a.mesh.name == b.mesh.name,
+            (Self::Neighbours(a), Self::Neighbours(b)) => {
+                (&a.mesh.name, a.points) == (&b.mesh.name, b.points)
+            }
             (Self::Growth(a), Self::Growth(b)) => (&a.shape, &a.order) == (&b.shape, &b.order),
             (Self::Pick(a), Self::Pick(b)) => {
                 let names = |pick: &PickReport| -> Vec<String> {

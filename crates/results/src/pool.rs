@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::findings::study::Report;
 use crate::operation::Purpose;
-pub(crate) use means::mean_over_sizes;
 use means::pooled;
+pub(crate) use means::{half_width, mean_over_sizes, with_errors};
 pub use means::{operations, overall};
 use sentences::warnings;
 pub use sentences::{leaders, next_best, not_ranked};

@@ -3,7 +3,7 @@
 use crate::findings::study::Report;
 use crate::launches::ratio_over_launches;
 use crate::numbers::shown_ratio;
-use crate::pool::{decade, mean_over_sizes};
+use crate::pool::{decade, half_width, mean_over_sizes, with_errors};
 use crate::ranking::ratio;
 use crate::rows::{Agreement, ResultRow, Samples};
 use crate::statistics::undisturbed;
@@ -61,20 +61,31 @@ pub fn mean_quotients(
         studies.iter().map(time).collect()
     };
     let times: Vec<Vec<Option<f64>>> = backends.iter().map(times).collect();
-    let quotient = |own: &Vec<Option<f64>>, other: &Vec<Option<f64>>| {
-        let both = studies.iter().zip(own.iter().zip(other));
-        let quotients =
-            both.filter_map(|(study, (own, other))| Some((decade(study), (*own)? / (*other)?)));
-        let quotients: Vec<(u32, f64)> = quotients.filter(|(_, ratio)| ratio.is_finite()).collect();
-        let (ratio, interval) = mean_over_sizes(&quotients)?;
+    let quotient = |own: usize, other: usize| {
+        let both = studies.iter().zip(times[own].iter().zip(&times[other]));
+        let quotients = both.filter_map(|(study, (own, other))| {
+            let ratio = (*own)? / (*other)?;
+            ratio.is_finite().then_some((*study, ratio))
+        });
+        let quotients: Vec<(&Report, f64)> = quotients.collect();
+        let by_size = quotients
+            .iter()
+            .map(|(study, ratio)| (decade(study), *ratio));
+        let (ratio, interval) = mean_over_sizes(&by_size.collect::<Vec<_>>())?;
+        let half_widths = quotients.iter().map(|(study, _)| {
+            let on_mesh = study.quotient(operation, &backends[own], &backends[other])?;
+            let [low, high] = on_mesh.interval?;
+            half_width(low, high)
+        });
         Some(Quotient {
             ratio,
-            interval,
+            interval: with_errors(interval, ratio, half_widths),
             meshes: quotients.len(),
         })
     };
-    let row = |own| times.iter().map(|other| quotient(own, other)).collect();
-    times.iter().map(row).collect()
+    let all = 0..times.len();
+    let row = |own| all.clone().map(|other| quotient(own, other)).collect();
+    all.clone().map(row).collect()
 }
 
 /// Returns the row of a measured time that can be compared with others.
@@ -219,5 +230,33 @@ mod tests {
         let two = mean(&reports).expect("measured");
         assert!((two.ratio - 8_f64.sqrt()).abs() < 1e-9, "{two:?}");
         assert_eq!((two.meshes, two.interval), (2, None));
+    }
+
+    /// The meshes agree, but the launches on each do not.
+    #[test]
+    fn a_mean_over_meshes_is_no_surer_than_the_times_on_the_meshes() {
+        let launches = [[1.0, 1.0, 1.0], [1.0, 1.4, 0.8]];
+        let with_launches = |slow: f64| {
+            let mut report = report(slow);
+            for (row, launches) in report.results.iter_mut().zip(launches) {
+                let ns = row.median_ns.expect("measured");
+                row.launch_ns = launches.map(|factor| Some(ns * factor)).into();
+            }
+            report
+        };
+        let half_width = |slow: [f64; 3]| {
+            let reports = slow.map(with_launches);
+            let studies: Vec<&Report> = reports.iter().collect();
+            let names = ["corner-table", "half-edge"].map(str::to_owned);
+            let mean = mean_quotients(&studies, BOUNDARY, &names)[0][1].expect("measured");
+            let [low, high] = mean.interval.expect("three meshes");
+            (high / low).ln() / 2.0
+        };
+        let on_mesh = with_launches(2.0).quotient(BOUNDARY, "corner-table", "half-edge");
+        let [low, high] = on_mesh.and_then(|on| on.interval).expect("three launches");
+        let expected = (high / low).ln() / 2.0 / 3_f64.sqrt();
+        assert!((half_width([2.0; 3]) / expected - 1.0).abs() < 1e-9);
+        // Meshes that differ have a wider interval.
+        assert!(half_width([2.0, 20.0, 0.2]) > 2.0 * expected);
     }
 }

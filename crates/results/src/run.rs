@@ -64,6 +64,9 @@ pub struct RunSettings {
     pub heap: Policy,
     /// State of the processor caches when a timed series of runs begins.
     pub caches: CacheState,
+    /// The number of untimed runs before each sample, if it was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warm_up: Option<u32>,
     /// True if faces with more than three corners were cut into triangles before the measurement.
     pub triangulate: bool,
     /// True if files with degenerate faces were refused.
@@ -156,7 +159,7 @@ impl RunSettings {
             (Some(_), Some(_)) => "--rounds",
             _ => "--budget",
         };
-        let options = |settings: &Self| -> [(&'static str, String); 10] {
+        let options = |settings: &Self| -> [(&'static str, String); 11] {
             [
                 ("--backends", settings.backends.join(",")),
                 ("--external", settings.externals.join(",")),
@@ -165,6 +168,10 @@ impl RunSettings {
                 ("--seed", settings.seed.to_string()),
                 ("--heap", settings.heap.to_string()),
                 ("--caches", settings.caches.name().into()),
+                (
+                    "--warmup",
+                    settings.warm_up.map_or(String::new(), |n| n.to_string()),
+                ),
                 ("--triangulate", settings.triangulate.to_string()),
                 ("--strict", settings.strict.to_string()),
                 ("reading of mesh files", settings.reading.join(" ")),

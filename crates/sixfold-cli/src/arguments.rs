@@ -280,6 +280,9 @@ pub(crate) struct Study {
     /// Measure exactly N rounds of everything, without a time limit
     #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
     pub(crate) rounds: Option<NonZeroU32>,
+    /// Untimed runs before each sample [default: as many as fill the caches]
+    #[arg(long, value_name = "N")]
+    pub(crate) warmup: Option<u32>,
     /// Run every operation on every backend, whatever it takes
     #[arg(long)]
     pub(crate) force: bool,

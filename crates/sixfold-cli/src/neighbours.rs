@@ -1,15 +1,17 @@
 //! `sixfold neighbours`: measures searches for neighbours in space.
 
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use comfy_table::Cell;
 use sixfold_results::numbers::figure;
 use sixfold_results::{NeighboursReport, Policy, SpatialTask};
-use sixfold_study::NeighboursSettings;
+use sixfold_study::{NeighboursSettings, Progress};
 
 use crate::arguments::Neighbours;
 use crate::facts_text::facts_text;
 use crate::failure::Failure;
+use crate::launches;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -24,7 +26,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
         indices: arguments.indices.clone(),
         points: arguments.points,
         effort: arguments.effort.effort(),
-        seed: arguments.seed,
+        seed: launches::seed(arguments.seed),
         heap: Policy::Kept,
     };
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
@@ -32,12 +34,28 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
     session.text.print_line(&facts_text(&study_mesh.report()));
+    let (given, faces) = (
+        arguments.launching.launches,
+        study_mesh.polygons.face_count(),
+    );
+    let count = launches::count(given, settings.effort, mesh, faces)?;
     let bar = Bar::new();
-    let report = sixfold_study::neighbours(&study_mesh, &settings, &session.stop, &mut |at| {
-        bar.show(at);
-    });
+    let report = match count {
+        1 => {
+            let mut show = |at: Progress<'_>| bar.show(at);
+            let report =
+                sixfold_study::neighbours(&study_mesh, &settings, &session.stop, &mut show);
+            report.map_err(Failure::usage)
+        }
+        count => {
+            let show = |done: f64, what: &str| bar.set(done, what);
+            launches::measure(count, settings.effort, None, &session.stop, &show)
+        }
+    };
     bar.clear();
-    let report = report.map_err(Failure::usage)?;
+    let mut report: NeighboursReport = report?;
+    report.mesh = study_mesh.report();
+    report.interrupted |= session.stop.load(Ordering::Relaxed);
     print(&report, &mut session.text);
     session.finish(with_command(report, false).into())
 }

@@ -14,7 +14,7 @@ use crate::arguments::{Pick, ReadFiles};
 use crate::baselines::Baselines;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::launches;
+use crate::launches::{self, Launch};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -60,7 +60,9 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
             .sum(),
     )?;
     warn_of_debug_build();
-    print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
+    if Launch::current().is_none() {
+        print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
+    }
     let bar = Bar::new();
     let report = measure(&study_meshes, &settings, count, &session.stop, &bar);
     bar.clear();

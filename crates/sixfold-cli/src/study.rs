@@ -32,6 +32,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         external_timeout: arguments.external_timeout,
         operations: arguments.operations.selected(),
         force: arguments.force,
+        warm_up: arguments.warmup,
         effort: launch.map_or(effort, |launch| launch.effort(effort)),
         seed: launches::seed(arguments.seed),
         heap: arguments.memory.heap,

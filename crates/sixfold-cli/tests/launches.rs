@@ -524,7 +524,7 @@ fn counts(rows: &Value) -> Vec<usize> {
 }
 
 #[test]
-fn orders_and_growth_are_measured_in_launches() {
+fn orders_growth_and_neighbours_are_measured_in_launches() {
     let sixfold = with_grid();
     let measure = |command: &[&'static str], name: &'static str| {
         let options = [

@@ -5,6 +5,7 @@ use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Res
 use sixfold_workload::{Backend, Operation};
 
 use crate::labs::growth::pool_growth;
+use crate::labs::neighbours::pool_neighbours;
 use crate::labs::orders::pool_orders;
 use crate::labs::pick::pool_picks;
 use crate::labs::study::conclude;
@@ -56,6 +57,7 @@ fn pool_group(group: Vec<Finding>) -> Option<Finding> {
         Finding::Pick(_) => Some(pool_picks(all(group)).into()),
         Finding::Orders(_) => Some(pool_orders(all(group)).into()),
         Finding::Growth(_) => Some(pool_growth(all(group)).into()),
+        Finding::Neighbours(_) => Some(pool_neighbours(all(group)).into()),
         _ => group.into_iter().next(),
     }
 }

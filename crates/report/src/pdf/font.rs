@@ -148,6 +148,19 @@ mod tests {
         );
     }
 
+    /// The table of widths ends before the last glyphs, which have the width of its last row.
+    #[test]
+    fn glyphs_after_the_table_of_widths_have_its_last_width() {
+        for font in [Font::regular(), Font::bold()] {
+            let rows = font.hhea.u16(34);
+            let last = font.advance(rows - 1);
+            assert_eq!(
+                [rows, rows + 1, u16::MAX].map(|glyph| font.advance(glyph)),
+                [last; 3]
+            );
+        }
+    }
+
     /// Letters that stand in other orders or shapes than they are stored are not in the font.
     #[test]
     fn letters_of_other_scripts_are_missing() {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::spatial_task::QueryPoints;
 use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
+use crate::launches::LaunchRows;
 use crate::read::ReadError;
 use crate::rows::{MeshReport, ResultRow, Samples};
 use crate::run::Run;
@@ -69,6 +70,16 @@ impl NeighboursReport {
     /// Iterates over the results of `task`.
     pub fn rows(&self, task: &str) -> impl Iterator<Item = &ResultRow> {
         self.results.iter().filter(move |row| row.operation == task)
+    }
+
+    /// Returns the rows of this launch, for [`pool_rows`](crate::launches::pool_rows()).
+    pub fn launch_rows(&self) -> LaunchRows<'_> {
+        LaunchRows {
+            results: &self.results,
+            refusals: &[],
+            samples: &self.samples,
+            control: None,
+        }
     }
 
     fn all_rows(&self) -> Rows<'_> {

@@ -18,8 +18,9 @@ struct Known {
     each: f64,
     /// Whether the time is an estimate: a lower bound.
     bound: bool,
-    /// The half-width of the 95 % interval of the logarithm of the ratio to the fastest backend.
-    log_error: f64,
+    /// The half-width of the 95 % interval of the logarithm of the ratio to the fastest backend; `None` without
+    /// an interval.
+    log_error: Option<f64>,
 }
 
 impl Known {
@@ -30,10 +31,9 @@ impl Known {
         let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
         let interval = row.ratio_ci_low.zip(row.ratio_ci_high);
         let log_error = match interval {
-            _ if bound || row.ratio_to_best == Some(1.0) => 0.0,
-            Some((low, high)) => (high / low).ln() / 2.0,
-            // Without an interval, a difference is clear from a ratio of 2.
-            None => 2_f64.ln(),
+            _ if bound || row.ratio_to_best == Some(1.0) => Some(0.0),
+            Some((low, high)) => half_width(low, high),
+            None => None,
         };
         let each = ns / row.elements.unwrap_or(1).max(1) as f64;
         (ns > 0.0 && same_work).then_some(Self {
@@ -118,6 +118,9 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
             let Some((ratio_to_best, interval)) = mean_over_sizes(&ratios) else {
                 continue;
             };
+            let half_widths =
+                rows().map(|(row, _)| half_width(row.ratio_ci_low?, row.ratio_ci_high?));
+            let interval = with_errors(interval, ratio_to_best, half_widths);
             let interval = interval.map(|ends| above_best(ends, ratio_to_best));
             let estimated = rows().filter(|(row, _)| row.median_ns.is_none()).count();
             let interval = interval.filter(|_| estimated == 0);
@@ -262,14 +265,14 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             let mut times = shared.iter().filter_map(|&case| value(case, backend));
             times.any(|time| time.bound)
         };
-        // The errors of different operations are independent.
-        let log_error = |backend: &str| match studies {
-            [_] => {
-                let known = shared.iter().filter_map(|&case| value(case, backend));
-                let squares: f64 = known.map(|known| known.log_error.powi(2)).sum();
-                squares.sqrt() / shared.len().max(1) as f64
-            }
-            _ => 0.0,
+        // The errors of different operations and meshes are independent.
+        let log_error = |backend: &str| {
+            let known = shared.iter().filter_map(|&case| value(case, backend));
+            // Without an interval, a difference on one mesh is clear from a ratio of 2.
+            let unknown = if studies.len() == 1 { 2_f64.ln() } else { 0.0 };
+            let errors = known.map(|known| known.log_error.unwrap_or(unknown));
+            let squares: f64 = errors.map(|error| error.powi(2)).sum();
+            squares.sqrt() / shared.len().max(1) as f64
         };
         let mut rows: Vec<Overall> = compared
             .iter()
@@ -286,6 +289,8 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                 let bound = is_bound(backend);
                 mean_over_sizes(&by_mesh).map(|(mean, interval)| {
                     let interval = interval.filter(|_| !bound);
+                    let within = [Some(log_error(backend))].into_iter();
+                    let interval = with_errors(interval, mean, within);
                     let interval = interval.map(|ends| above_best(ends, mean));
                     Overall {
                         purpose,
@@ -332,6 +337,31 @@ pub(crate) fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64
     let (centre, interval) = geometric_mean(&all)?;
     let interval = interval.map(|ends| ends.map(|end| end * mean / centre));
     Some((mean, interval))
+}
+
+/// Widens the interval of a mean over meshes if the errors of the single meshes give a wider one. The variation from mesh to
+/// mesh includes these errors, but meshes may agree by chance. `half_widths` are those of the intervals on the meshes, on the
+/// scale of logarithms.
+pub(crate) fn with_errors(
+    interval: Option<[f64; 2]>,
+    mean: f64,
+    half_widths: impl Iterator<Item = Option<f64>>,
+) -> Option<[f64; 2]> {
+    let [low, high] = interval?;
+    let (squares, count) = half_widths.fold((0.0, 0.0), |(squares, count), half: Option<f64>| {
+        (squares + half.unwrap_or(0.0).powi(2), count + 1.0)
+    });
+    let within = f64::sqrt(squares) / f64::max(count, 1.0);
+    match half_width(low, high) {
+        Some(between) if between < within => Some([mean * (-within).exp(), mean * within.exp()]),
+        _ => Some([low, high]),
+    }
+}
+
+/// Returns half the width of an interval on the scale of logarithms; `None` if it is not finite.
+pub(crate) fn half_width(low: f64, high: f64) -> Option<f64> {
+    let half = (high / low).ln() / 2.0;
+    half.is_finite().then_some(half)
 }
 
 /// Moves the lower end of the interval of a mean ratio to 1 if it is below 1, because no backend is

@@ -7,7 +7,7 @@ use sixfold::UnknownName;
 use sixfold_results::QueryPoints;
 use sixfold_study::neighbour_indices;
 
-use super::{EffortArgs, ReadFiles, ResultFiles, seed};
+use super::{EffortArgs, LaunchArgs, ReadFiles, ResultFiles, seed};
 
 const EXAMPLES: &str = "Examples:
   sixfold neighbours                             the built-in mesh
@@ -55,6 +55,8 @@ pub(crate) struct Neighbours {
     pub(crate) points: QueryPoints,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     /// Seed of the query points and of the order of measurements
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,

@@ -98,6 +98,7 @@ impl<'m> Bench<'m> {
             effort,
             named,
             forced,
+            untimed,
             seed,
         } = trial;
         let (stop, clock) = (self.stop, self.clock());
@@ -111,6 +112,7 @@ impl<'m> Bench<'m> {
             effort,
             named,
             forced,
+            untimed,
             random: ChaCha8Rng::seed_from_u64(seed),
             subjects: &mut columns.subjects,
             control: columns.control.map(|[_, second]| second),
@@ -152,6 +154,8 @@ pub(crate) struct Trial<'s> {
     pub(crate) named: bool,
     /// Whether all operations are run at any price.
     pub(crate) forced: bool,
+    /// The number of untimed runs before each sample; `None` if the measurement chooses it.
+    pub(crate) untimed: Option<u32>,
     /// Seed of the order of the measurements.
     pub(crate) seed: u64,
 }

@@ -104,6 +104,7 @@ fn engine_cost() {
         effort,
         named: false,
         forced: false,
+        untimed: None,
         seed: 1,
     };
     let mut bench =

@@ -287,6 +287,7 @@ pub(crate) struct Measurement<'m, 's> {
     pub(crate) effort: Effort,
     pub(crate) named: bool,
     pub(crate) forced: bool,
+    pub(crate) untimed: Option<u32>,
     pub(crate) random: ChaCha8Rng,
     pub(crate) subjects: &'m mut [Box<dyn TimedBackend + 's>],
     /// Index of the second copy of the backend that is measured twice.
@@ -306,6 +307,13 @@ impl<'m> Measurement<'m, '_> {
         match self.effort {
             Effort::Budget(_) => self.warm_up(&mut entries, deadline),
             Effort::Rounds(_) => self.plan_by_count(&mut entries),
+        }
+        if let Some(untimed) = self.untimed {
+            for entry in &mut entries {
+                let run_ns = entry.cost_ns / f64::from(entry.untimed + entry.runs);
+                entry.cost_ns = run_ns * f64::from(untimed + entry.runs);
+                entry.untimed = untimed;
+            }
         }
         self.memory.reserve();
         let allocates = entries.iter().any(|entry| entry.job.task.allocates());

@@ -295,6 +295,7 @@ impl Sweep<'_> {
             effort: effort(),
             named: !self.settings.study.operations.is_empty(),
             forced: self.settings.study.force,
+            untimed: None,
             seed: seed.wrapping_add(step as u64),
         };
         let measured = self.bench.measure(trial, progress);

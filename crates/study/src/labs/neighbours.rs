@@ -12,6 +12,8 @@ use std::time::Duration;
 
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
+use sixfold_results::launches::{LaunchRows, pool_rows};
+use sixfold_results::ranking::NO_DIFFERENCE;
 use sixfold_results::{
     CheapestIndices, IndexReport, NeighboursReport, Policy, QueryPoints, ResultRow, RunSettings,
     SpatialTask, noise,
@@ -26,6 +28,7 @@ use crate::engine::measure::{Entry, Progress};
 use crate::engine::warnings::machine_warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::StudyError;
+use crate::launches::{pool_runs, pool_timers};
 use cheapest::{Cost, cheapest};
 
 /// Maximum number of elements that the list visits in one run.
@@ -163,6 +166,7 @@ pub(crate) fn neighbours_on(
         effort: budget.left(),
         named: true,
         forced: false,
+        untimed: None,
         seed: settings.seed,
     };
     let measured = bench.measure(trial, progress);
@@ -187,6 +191,33 @@ pub(crate) fn neighbours_on(
     };
     report.sentences = sentences::sentences(&report);
     Ok(report)
+}
+
+/// Pools the searches on one mesh, measured in several launches. The noise is that of the noisiest launch.
+pub(crate) fn pool_neighbours(mut launches: Vec<NeighboursReport>) -> NeighboursReport {
+    if launches.len() == 1 {
+        return launches.remove(0);
+    }
+    let rows: Vec<LaunchRows<'_>> = launches.iter().map(NeighboursReport::launch_rows).collect();
+    let pooled = pool_rows(&rows, |row| row.operation.clone());
+    let run = pool_runs(launches.iter().map(|launch| &launch.run));
+    let timers = launches.iter().map(|launch| launch.timer);
+    let noises = launches.iter().filter_map(|launch| launch.noise);
+    let first = &launches[0];
+    let mut report = NeighboursReport {
+        warnings: machine_warnings(&run, &pooled.samples.iter().collect::<Vec<_>>()),
+        run,
+        timer: pool_timers(timers).unwrap_or(first.timer),
+        // The intervals of the launches decide.
+        cheapest: cheapest_indices(&pooled.results, &|_| NO_DIFFERENCE),
+        noise: noises.max_by(f64::total_cmp),
+        interrupted: launches.iter().any(|launch| launch.interrupted),
+        results: pooled.results,
+        samples: pooled.samples,
+        ..first.clone()
+    };
+    report.sentences = sentences::sentences(&report);
+    report
 }
 
 /// Returns an entry for each task on each index. The list gets a sample of the queries if it would

@@ -142,6 +142,7 @@ pub(crate) fn orders_on(
         effort: budget.left(),
         named: !settings.operations.is_empty(),
         forced: settings.force,
+        untimed: None,
         seed: settings.seed,
     };
     // One correction for all orders of all structures, so that all their times can be compared.

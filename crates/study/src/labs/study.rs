@@ -51,6 +51,8 @@ pub struct Settings {
     pub effort: Effort,
     /// If true, every operation is run at least once on every backend, whatever it takes.
     pub force: bool,
+    /// The number of untimed runs before each sample. `None` if the study chooses it, so that they fill the caches.
+    pub warm_up: Option<u32>,
     /// Seed of the random numbers that choose elements and the order of the measurements. The
     /// number of chosen elements does not depend on the seed.
     pub seed: u64,
@@ -71,6 +73,7 @@ impl Default for Settings {
             operations: Vec::new(),
             effort: Effort::Budget(Duration::from_secs(20)),
             force: false,
+            warm_up: None,
             seed: 1,
             heap: Policy::Kept,
             caches: CacheState::Warm,
@@ -184,6 +187,7 @@ impl Settings {
             seed: self.seed,
             heap: self.heap,
             caches: self.caches,
+            warm_up: self.warm_up,
             ..self.effort.run_settings()
         }
     }
@@ -287,6 +291,7 @@ pub(crate) fn study_on(
         effort: budget.left(),
         named: !settings.operations.is_empty(),
         forced: settings.force,
+        untimed: settings.warm_up,
         seed: settings.seed,
     };
     let measured = bench.measure(trial, progress);

@@ -200,6 +200,7 @@ fn watch_trial(
         effort: limits.effort,
         named: limits.named,
         forced: limits.forced,
+        untimed: None,
         seed: 3,
     };
     let settings = RunSettings {

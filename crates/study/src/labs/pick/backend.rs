@@ -164,6 +164,7 @@ pub(crate) fn build_tables<'a>(
         effort,
         named: true,
         forced: false,
+        untimed: None,
         seed,
     };
     let measured = bench.measure(trial, &mut |_| ());

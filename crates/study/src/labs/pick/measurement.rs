@@ -87,6 +87,7 @@ impl PickMeasurement<'_, '_> {
             effort: self.effort,
             named: true,
             forced: false,
+            untimed: None,
             seed: self.seed,
         };
         let measured = self.bench.measure(trial, &mut |at: Progress<'_>| {

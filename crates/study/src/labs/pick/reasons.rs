@@ -121,11 +121,16 @@ fn not_ranked(report: &PickReport, best: &Ranked) -> Option<String> {
 }
 
 fn fastest(report: &PickReport, best: &Ranked) -> String {
-    let tied: Vec<String> = report.ranking[1..]
-        .iter()
-        .filter(|ranked| ranked.tied_with_best)
-        .map(name)
-        .collect();
+    let tied = || {
+        let others = report.ranking[1..].iter();
+        others.filter(|ranked| ranked.tied_with_best)
+    };
+    let is_equal = |ranked: &Ranked| {
+        let interval = ranked.ci_low.zip(ranked.ci_high);
+        interval.is_some_and(|(low, high)| EQUAL_UP_TO.recip() <= low && high <= EQUAL_UP_TO)
+    };
+    let all_equal = tied().all(is_equal);
+    let tied: Vec<String> = tied().map(name).collect();
     let each = duration(best.ns_per_operation);
     let workload = &report.workload.name;
     let unit = report.unit();
@@ -161,10 +166,17 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             "{answer} {workload}, {} is {clearly}fastest: {each} per {unit}{next}.",
             name(best)
         ),
-        tied => format!(
-            "{answer} {workload}, {} are tied: {each} per {unit}{next}.",
-            list(std::iter::once(&name(best)).chain(tied))
-        ),
+        tied => {
+            let names = list(std::iter::once(&name(best)).chain(tied));
+            match all_equal {
+                true => format!(
+                    "{answer} {workload}, {names} are equally fast (within 5 %): {each} per {unit}{next}."
+                ),
+                false => format!(
+                    "{answer} {workload}, it is undecided which is fastest of {names}: {each} per {unit}{next}."
+                ),
+            }
+        }
     }
 }
 
@@ -262,18 +274,25 @@ fn one_use_with_building(report: &PickReport, used: &Ranked) -> Option<String> {
         .min_by(|a, b| total(a).total_cmp(&total(b)))?;
     let unit = report.unit();
     let amount = counted(operations.round() as usize, unit, &format!("{unit}s"));
-    let cost = duration(total(least));
-    Some(match least.backend == used.backend {
+    // A difference of 5 % is no reason for another structure.
+    let is_close = total(used) <= EQUAL_UP_TO * total(least);
+    let nearly = match (is_close, least.backend == used.backend) {
+        (true, false) => ", within 5 %,",
+        _ => "",
+    };
+    Some(match is_close {
         true => format!(
-            "{} also takes the least time for one use of the mesh ({amount}), building included: \
-             {cost} in total.",
-            name(used)
+            "{} also takes the least time{nearly} for one use of the mesh ({amount}), building \
+             included: {} in total.",
+            name(used),
+            duration(total(used)),
         ),
         false => format!(
             "For a single use of the mesh ({amount}), choose {} instead: building included, it takes \
-             {cost} in total, and {} takes {}. The input is already an indexed face set, so the \
+             {} in total, and {} takes {}. The input is already an indexed face set, so the \
              time to build this structure counts as 0.",
             name(least),
+            duration(total(least)),
             name(used),
             duration(total(used)),
         ),

@@ -128,6 +128,7 @@ pub(crate) fn record_program_on(
         effort: budget.share(1.0, SELECTION_SHARE),
         named: true,
         forced: true,
+        untimed: None,
         seed: settings.seed,
     };
     let measured = bench.measure(trial, &mut |_| ());
@@ -222,6 +223,7 @@ fn calibrate(
         effort,
         named: true,
         forced: true,
+        untimed: None,
         seed,
     };
     let measured = bench.measure(trial, &mut |_| ());
