@@ -155,7 +155,6 @@ reading = Claims(
         19 of 20 intervals
         a ratio that contains 1 means
         which of the two is faster
-        So are two whose times
         for milliseconds
         its whole interval is above 1.
         from 1.00 to 1.00
@@ -177,7 +176,7 @@ def example(backend):
     row = study().rows["edge_length", backend]
     shown = figures.three_digits(figures.shown(ns(backend)) / figures.shown(ns("half-edge")))
     low, high = (figures.three_digits(row[f"ratio_ci_{end}"]) for end in ("low", "high"))
-    tied = {"tied": " tied for best", "slower": ""}[row["standing"]]
+    tied = {"tied": " undecided", "slower": ""}[row["standing"]]
     return f"{shown} {low} to {high} {figures.time(ns(backend))}{tied}"
 
 

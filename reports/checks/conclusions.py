@@ -24,7 +24,6 @@ page = Claims(
         one of the six structures
         has the four backends
         times of two structures are close
-        ignores ratios up to 1.2
         two schemes by three methods
         five spatial indices
         eight programs

@@ -27,7 +27,7 @@ use crate::run::Run;
 use crate::statistics::{median, quotient};
 use matching::{AllMeasured, CommonMeshes, MeasuredFigure, measurements};
 
-/// The probability with which a comparison calls any of its times slower though the program did not change.
+/// The probability with which a comparison calls any of its times slower or faster though the program did not change.
 pub const FALSE_ALARM: f64 = 1.0 / 200.0;
 
 /// Options of a comparison.
@@ -286,7 +286,7 @@ pub fn compare(
     let rows: Vec<Change> = rows.collect();
     let mut environment: Vec<SettingChange> = Vec::new();
     for (a, b) in in_both() {
-        for change in a.finding.run().differences(b.finding.run()) {
+        for change in differences(a.finding.run(), b.finding.run()) {
             if !environment.contains(&change) {
                 environment.push(change);
             }
@@ -414,14 +414,8 @@ fn verdict(
     }
 }
 
-impl Run {
-    /// Returns the differences between the machines, programs, settings and tags of this run and `after`.
-    pub fn differences(&self, after: &Self) -> Vec<SettingChange> {
-        differences(self, after)
-    }
-}
-
-fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
+/// Returns the differences between machines, programs, settings and tags.
+pub fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
     }

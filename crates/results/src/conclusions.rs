@@ -35,11 +35,11 @@ pub enum Fate {
 
 /// Returns the conclusions of `before`, and what `after` says about them.
 ///
-/// Findings belong together if they are of the same command and meshes and, in picks, of the same workload.
-/// O(findings² + rows).
+/// Findings belong together if they are of the same command and, by their content, of the same meshes and, in picks, of
+/// the same workload. The names of the meshes may differ: files may have moved. O(findings² + rows).
 pub fn conclusions(before: &Results, after: &Results) -> Vec<Conclusion> {
     let all = before.findings.iter().flat_map(|finding| {
-        let again = after.findings.iter().find(|other| finding.repeats(other));
+        let again = after.findings.iter().find(|other| is_again(finding, other));
         let found = again.map_or_else(Vec::new, winners);
         winners(finding).into_iter().map(move |(of, winner)| {
             let now = found.iter().find(|(other, _)| *other == of);
@@ -57,6 +57,22 @@ pub fn conclusions(before: &Results, after: &Results) -> Vec<Conclusion> {
         })
     });
     all.collect()
+}
+
+/// Returns whether `other` measured the same meshes again.
+fn is_again(finding: &Finding, other: &Finding) -> bool {
+    let meshes = |finding: &Finding| -> Vec<String> {
+        finding
+            .meshes()
+            .iter()
+            .map(|mesh| mesh.sha256.clone())
+            .collect()
+    };
+    let same_workload = match (finding, other) {
+        (Finding::Pick(a), Finding::Pick(b)) => a.workload == b.workload,
+        _ => true,
+    };
+    finding.kind() == other.kind() && meshes(finding) == meshes(other) && same_workload
 }
 
 /// Returns the operations or the workload of which one backend alone is the fastest, with this backend.

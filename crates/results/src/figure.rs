@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use crate::findings::why::Reads;
+use crate::launches::LaunchRows;
 use crate::read::ReadError;
 use crate::rows::{
-    Control, MeshReport, Refusal, RefusalKind, ResultRow, Samples, check_control, check_results,
-    check_samples,
+    MeshReport, RefusalKind, ResultRow, Samples, check_control, check_results, check_samples,
 };
 use crate::run::Run;
 
@@ -136,10 +136,7 @@ impl<'r> Figure<'r> {
 /// The rows of a lab on one mesh, with what belongs to them.
 pub(crate) struct Rows<'r> {
     pub(crate) run: &'r Run,
-    pub(crate) results: &'r [ResultRow],
-    pub(crate) refusals: &'r [Refusal],
-    pub(crate) samples: &'r [Samples],
-    pub(crate) control: Option<&'r Control>,
+    pub(crate) rows: LaunchRows<'r>,
 }
 
 impl<'r> Rows<'r> {
@@ -153,18 +150,18 @@ impl<'r> Rows<'r> {
             let info = self.run.operation(operation);
             info.map_or("", |info| info.unit.as_str())
         };
-        let timed = self.results.iter().map(|row| {
+        let timed = self.rows.results.iter().map(|row| {
             let status = match (row.median_ns, row.sampled) {
                 (None, _) => Status::Estimated,
                 (Some(_), true) => Status::Sampled,
                 (Some(_), false) => Status::Measured,
             };
             Figure {
-                samples: samples_of(self.samples, &row.case, &row.operation, &row.backend),
+                samples: samples_of(self.rows.samples, &row.case, &row.operation, &row.backend),
                 ..Figure::new(mesh, bytes(&row.backend), status, row.clone())
             }
         });
-        let refused = self.refusals.iter().map(|refusal| {
+        let refused = self.rows.refusals.iter().map(|refusal| {
             let row = ResultRow::new(
                 &refusal.backend,
                 &refusal.operation,
@@ -177,9 +174,9 @@ impl<'r> Rows<'r> {
 
     /// Returns an error for values that no measurement can produce.
     pub(crate) fn check(&self) -> Result<(), ReadError> {
-        check_samples(self.samples)?;
-        check_results(self.results)?;
-        check_control(self.control)
+        check_samples(self.rows.samples)?;
+        check_results(self.rows.results)?;
+        check_control(self.rows.control)
     }
 }
 

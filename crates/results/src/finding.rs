@@ -94,8 +94,8 @@ macro_rules! findings {
                 }
             }
 
-            fn parts_mut(&mut self) -> (&mut Run, &mut dyn Meshes) {
-                (&mut self.run, &mut self.$meshes)
+            fn parts_mut(&mut self) -> (&mut Run, &mut dyn Meshes, &mut bool) {
+                (&mut self.run, &mut self.$meshes, &mut self.interrupted)
             }
         })+
 
@@ -207,8 +207,8 @@ impl Meshes for Vec<MeshReport> {
 /// The access to the fields that the findings of all labs have.
 pub(crate) trait CommonFields {
     fn common(&self) -> Common<'_>;
-    /// Returns the run and the meshes, so that they can be changed.
-    fn parts_mut(&mut self) -> (&mut Run, &mut dyn Meshes);
+    /// Returns the run, the meshes and whether the measurement was stopped early, so that they can be changed.
+    fn parts_mut(&mut self) -> (&mut Run, &mut dyn Meshes, &mut bool);
 }
 
 /// What the finding of a lab adds.
@@ -247,6 +247,20 @@ impl Finding {
         self.lab().common().sentences
     }
 
+    /// Replaces the measured meshes, for example by the same with pictures.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the finding is of one mesh, and their number is another one.
+    pub fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        self.lab_mut().parts_mut().1.set(meshes)
+    }
+
+    /// Notes that the measurement was stopped early.
+    pub fn set_interrupted(&mut self) {
+        *self.lab_mut().parts_mut().2 = true;
+    }
+
     /// Returns sentences about possible faults of the measurement and their remedies.
     pub fn warnings(&self) -> &[String] {
         self.lab().common().warnings
@@ -272,7 +286,7 @@ impl Finding {
     /// Adds the run and the meshes to a finding that was read from a file, and checks its values.
     pub(crate) fn complete(&mut self, run: Run, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         let lab = self.lab_mut();
-        let (old_run, old_meshes) = lab.parts_mut();
+        let (old_run, old_meshes, _) = lab.parts_mut();
         *old_run = run;
         old_meshes.set(meshes)?;
         lab.check()

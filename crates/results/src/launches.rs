@@ -33,7 +33,8 @@ pub const FEWEST_LAUNCHES: usize = 2;
 pub const TRIMMED: f64 = 0.2;
 /// The variance of a time from study to study that no study sees, divided by the variance from launch to launch.
 ///
-/// Measured in twenty studies of a minute on a virtual machine with busy neighbours (reports/repeatability).
+/// Chosen from twenty studies of a minute on a virtual machine with busy neighbours, so that about 94 % of the
+/// intervals contain the median of the other studies. `benches/checks/repeat.py` measures it.
 pub const LASTING_IN_TIMES: f64 = 1.0 / 8.0;
 /// The same of a ratio of two times. What slows the whole machine down changes no ratio.
 pub const LASTING_IN_RATIOS: f64 = 1.0 / 20.0;

@@ -37,7 +37,7 @@ mod timer;
 
 pub use compare::{
     BytesChange, Change, Changes, CompareError, CompareSettings, FALSE_ALARM, Measurement,
-    MeasurementPart, NewWinner, SettingChange, Verdict, compare,
+    MeasurementPart, NewWinner, SettingChange, Verdict, compare, differences,
 };
 pub use conclusions::{Conclusion, Fate, conclusions};
 pub use corrected::corrected_times;

@@ -164,8 +164,9 @@ fn samples(finding: &Finding) -> Vec<Option<&Samples>> {
 }
 
 impl Finding {
-    /// Returns whether this finding and `other` measured the same, so that they can be pooled as launches: studies of
-    /// one mesh, its orders or searches in it, the growth of one shape, or picks for one workload on the same meshes, by their names.
+    /// Returns whether this finding and `other` measured the same, so that they can be pooled as launches: studies
+    /// of one mesh, its orders or searches in it, the growth of one shape, or picks for one workload on the same
+    /// meshes, by their names.
     pub fn repeats(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Study(a), Self::Study(b)) => a.mesh.name == b.mesh.name,

@@ -15,6 +15,7 @@ mod render;
 mod repair;
 mod reshaping;
 mod results;
+mod selection;
 mod subdivision;
 mod teaching;
 mod why;
@@ -27,8 +28,8 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use sixfold::shapes::{GENERATORS, Generator, Order, generator};
 use sixfold::{Relation, UnknownName};
-use sixfold_results::{CacheState, OperationGroup, Policy};
-use sixfold_study::{Effort, External, Operation, Settings};
+use sixfold_results::{CacheState, Policy};
+use sixfold_study::{Effort, External, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders, Rerun};
 pub(crate) use convert::Convert;
@@ -44,7 +45,8 @@ pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use repair::{ChosenSteps, Repair, joined_values, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
-pub(crate) use results::{BaselineArgs, ResultFiles};
+pub(crate) use results::ResultFiles;
+pub(crate) use selection::OperationArgs;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use teaching::{Explained, Explore, Lessons, Tables, Trace};
 pub(crate) use why::Why;
@@ -281,7 +283,7 @@ pub(crate) struct Study {
     #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
     pub(crate) rounds: Option<NonZeroU32>,
     /// Untimed runs before each sample [default: as many as fill the caches]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1_000_000))]
     pub(crate) warmup: Option<u32>,
     /// Run every operation on every backend, whatever it takes
     #[arg(long)]
@@ -307,8 +309,6 @@ pub(crate) struct Study {
     pub(crate) strict: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
-    #[command(flatten)]
-    pub(crate) baselines: BaselineArgs,
     /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
@@ -326,31 +326,6 @@ pub(crate) struct Study {
     pub(crate) shard: Option<Shard>,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
-}
-
-// What to measure.
-#[derive(Clone, Debug, Default, Args)]
-pub(crate) struct OperationArgs {
-    /// Run only these operations: names, patterns such as 'vertex_*', or groups such as edits
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = selection)]
-    operations: Vec<Selection>,
-}
-
-/// The operations that one word selects.
-#[derive(Clone, Debug)]
-struct Selection(Vec<Operation>);
-
-impl OperationArgs {
-    /// Returns the selected operations, each once; empty for the default of the command.
-    pub(crate) fn selected(&self) -> Vec<Operation> {
-        let mut selected = Vec::new();
-        for operation in self.operations.iter().flat_map(|selection| &selection.0) {
-            if !selected.contains(operation) {
-                selected.push(*operation);
-            }
-        }
-        selected
-    }
 }
 
 // How much to measure. The commands differ in the default of `budget`.
@@ -373,15 +348,12 @@ pub(crate) struct LaunchArgs {
 }
 
 impl EffortArgs {
-    /// Returns the number of rounds, or else the time, of the whole command.
-    pub(crate) fn whole(self) -> Effort {
-        self.rounds
-            .map_or(Effort::Budget(self.budget), Effort::Rounds)
-    }
-
     /// Returns the number of rounds, or else the time, of this process, which may be one of several launches.
     pub(crate) fn effort(self) -> Effort {
-        Launch::current().map_or(self.whole(), |launch| launch.effort(self.whole()))
+        let whole = self
+            .rounds
+            .map_or(Effort::Budget(self.budget), Effort::Rounds);
+        Launch::current().map_or(whole, |launch| launch.effort(whole))
     }
 }
 
@@ -526,39 +498,6 @@ fn duration(text: &str) -> Result<Duration, String> {
         Some(_) => Err("a time must be above 0 and at most a week".into()),
         None => Err("write a time as 20s, 500ms or 2m".into()),
     }
-}
-
-/// Parses the name of an operation, a pattern with `*`, or the name of a group.
-fn selection(text: &str) -> Result<Selection, String> {
-    let text = text.trim();
-    let matching = |is_selected: &dyn Fn(Operation) -> bool| {
-        let all = Operation::ALL.into_iter().filter(|o| is_selected(*o));
-        Selection(all.collect())
-    };
-    let found = match (text.parse::<Operation>(), text.parse::<OperationGroup>()) {
-        (Ok(operation), _) => return Ok(Selection(vec![operation])),
-        (Err(_), Ok(group)) => matching(&|operation| operation.group() == group),
-        (Err(unknown), Err(_)) if !text.contains('*') => return Err(unknown.to_string()),
-        (Err(_), Err(_)) => matching(&|operation| matches(operation.name(), text)),
-    };
-    match found.0.is_empty() {
-        true => Err(format!(
-            "no operation matches `{text}`: `sixfold operations` lists them"
-        )),
-        false => Ok(found),
-    }
-}
-
-/// Returns whether a name matches a pattern, in which `*` stands for any letters.
-fn matches(name: &str, pattern: &str) -> bool {
-    let Some((start, rest)) = pattern.split_once('*') else {
-        return name == pattern;
-    };
-    let Some(name) = name.strip_prefix(start) else {
-        return false;
-    };
-    let mut ends = name.char_indices().map(|(at, _)| at).chain([name.len()]);
-    ends.any(|at| matches(&name[at..], rest))
 }
 
 /// Parses a number of launches.

@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 
 use sixfold_results::{CompareSettings, Results, compare};
 
-use crate::arguments::BaselineArgs;
+use crate::arguments::ResultFiles;
 use crate::compare::print;
 use crate::failure::Failure;
-use crate::launches::Launch;
 use crate::load;
 use crate::mesh_files::shown;
 use crate::output::{Output, cannot_write};
@@ -18,6 +17,7 @@ use crate::text::{TextOutput, print_notice};
 const FOLDER: &str = ".sixfold";
 
 /// The baselines of a command.
+#[derive(Default)]
 pub(crate) struct Baselines {
     /// The name of the baseline to compare with, and its results.
     known: Option<(String, Results)>,
@@ -31,14 +31,8 @@ impl Baselines {
     /// # Errors
     ///
     /// Returns an error if it does not exist or is not a document.
-    pub(crate) fn open(arguments: &BaselineArgs) -> Result<Self, Failure> {
-        if Launch::current().is_some() {
-            return Ok(Self {
-                known: None,
-                save: None,
-            });
-        }
-        let known = arguments.baseline.as_ref().map(|name| {
+    pub(crate) fn open(files: &ResultFiles) -> Result<Self, Failure> {
+        let known = files.baseline.as_ref().map(|name| {
             let path = path_of(name);
             match path.is_file() {
                 true => Ok((name.clone(), load::read_results(&path)?)),
@@ -50,7 +44,7 @@ impl Baselines {
         });
         Ok(Self {
             known: known.transpose()?,
-            save: arguments.save_baseline.clone(),
+            save: files.save_baseline.clone(),
         })
     }
 

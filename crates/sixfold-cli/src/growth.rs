@@ -1,7 +1,7 @@
 //! `sixfold growth`: measures how times grow with the size of the mesh.
 
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use comfy_table::Cell;
 use sixfold_results::{Fit, GrowthReport, ResultRow, SizeReport, Slope};
@@ -12,7 +12,7 @@ use sixfold_study::{
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches;
+use crate::launches::{self, Plan};
 use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::default_operations;
@@ -47,20 +47,18 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     // A size that cannot be planned is refused by the measurement.
     let sizes = sixfold_study::growth_plan(&settings).map_or_else(|_| Vec::new(), |plan| plan.0);
     let (given, effort) = (arguments.launching.launches, settings.study.effort);
-    let report = match launches::count(given, effort, [], sizes.iter().sum())? {
-        1 => measure(&settings, &session.stop, &Bar::new())?,
-        count => {
-            let bar = Bar::new();
-            let show = |done: f64, what: &str| bar.set(done, what);
-            let report: Result<GrowthReport, Failure> =
-                launches::measure(count, effort, None, &session.stop, &show);
-            bar.clear();
-            let interrupted = session.stop.load(Ordering::Relaxed);
-            let mut report = report?;
-            report.interrupted |= interrupted;
-            report
-        }
+    let bar = Bar::new();
+    let plan = Plan {
+        count: launches::count(given, effort, [], sizes.iter().sum())?,
+        effort,
+        mesh: None,
+        stop: &session.stop,
     };
+    let report = plan.measure(None, &|done, what| bar.set(done, what), || {
+        measure(&settings, &session.stop, &bar)
+    });
+    bar.clear();
+    let report = report?;
     print(&report, &mut session.text);
     session.finish(with_command(report, false).into())
 }

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use sixfold_results::numbers::counted;
-use sixfold_results::{Finding, Results};
+use sixfold_results::{Finding, MeshReport, Results};
 use sixfold_study::{Effort, LAUNCH_VARIABLE, pool_launches};
 
 use crate::failure::Failure;
@@ -215,26 +215,48 @@ fn run(
     }
 }
 
-/// Runs `count` launches of a command with one finding, and pools them, see [`run`]. Without launches, `count` is 1.
-///
-/// # Errors
-///
-/// Returns the errors of [`run`], and an error if the command was interrupted before the first result.
-pub(crate) fn measure<T: TryFrom<Finding>>(
-    count: u32,
-    effort: Effort,
-    mesh: Option<&str>,
-    stop: &AtomicBool,
-    show: &dyn Fn(f64, &str),
-) -> Result<T, Failure> {
-    let results = run(count, effort, mesh, stop, show)?;
-    let mut findings = results.findings.into_iter();
-    let found = findings.find_map(|mut finding| {
-        let run = finding.run_mut();
-        run.settings.budget_s = effort.run_settings().budget_s;
-        T::try_from(finding).ok()
-    });
-    found.ok_or_else(interrupted_early)
+/// How a command with one finding measures.
+pub(crate) struct Plan<'p> {
+    /// The number of launches; with one, this process measures.
+    pub(crate) count: u32,
+    /// How much the whole command measures.
+    pub(crate) effort: Effort,
+    /// The name of the mesh to measure, if the command has several.
+    pub(crate) mesh: Option<&'p str>,
+    /// The flag that ends the measurement.
+    pub(crate) stop: &'p AtomicBool,
+}
+
+impl Plan<'_> {
+    /// Measures in this process, by `here`, or in several launches, see [`run`]. A finding of several launches gets
+    /// `meshes`, which this process has read, with their pictures; growth makes its own. `show` is called with the
+    /// finished part, from 0 to 1, and the current step.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of `here` or of [`run`], and an error if the command was interrupted before the first result.
+    pub(crate) fn measure<T: TryFrom<Finding>>(
+        &self,
+        meshes: Option<Vec<MeshReport>>,
+        show: &dyn Fn(f64, &str),
+        here: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        if self.count == 1 {
+            return here();
+        }
+        let results = run(self.count, self.effort, self.mesh, self.stop, show)?;
+        let mut findings = results.findings.into_iter();
+        let mut finding = findings.next().ok_or_else(interrupted_early)?;
+        finding.run_mut().settings.budget_s = self.effort.run_settings().budget_s;
+        if let Some(meshes) = meshes {
+            finding.set_meshes(meshes).map_err(Failure::usage)?;
+        }
+        // An interruption between two launches is in none of them.
+        if self.stop.load(Ordering::Relaxed) {
+            finding.set_interrupted();
+        }
+        T::try_from(finding).map_err(|_| interrupted_early())
+    }
 }
 
 /// Returns the failure of a command that was interrupted before its first launch had a result.

@@ -16,7 +16,6 @@ use sixfold_results::{Failed, FailureKind, Finding, Report, Results};
 use sixfold_study::{Settings, StudyMesh};
 
 use crate::arguments::Study;
-use crate::baselines::Baselines;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::launches;
@@ -46,7 +45,6 @@ const NONE_HOLDS: &str = "none of the selected backends can hold the mesh: see `
 /// Studies the selected meshes without a finished study. If a mesh cannot be loaded, lists the mesh
 /// and continues.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
-    let baselines = Baselines::open(&arguments.baselines)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let single = meshes.len() == 1;
     let selected_labs = labs::selected_labs(arguments.labs.as_ref(), single)?;
@@ -107,9 +105,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     }
     let interrupted = stop.load(Ordering::Relaxed);
     print(&results, single, &mut session.text);
-    baselines.print_changes(&results, &mut session.text);
     let mut written = session.write(&mut results).and(saved);
-    written = written.and(baselines.save(&results));
     // A report on nothing would look like a result.
     let is_empty = results.findings.is_empty() && arguments.shard.is_none();
     let none_studied = none_studied && !interrupted && arguments.shard.is_none();

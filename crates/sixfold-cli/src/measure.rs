@@ -11,6 +11,7 @@ use sixfold_results::{Agreement, Finding, Policy, Report, ResultRow, Results};
 use sixfold_study::StudyMesh;
 
 use crate::arguments::ResultFiles;
+use crate::baselines::Baselines;
 use crate::failure::Failure;
 use crate::launches::{self, Launch};
 use crate::mesh_picture::with_picture;
@@ -28,6 +29,7 @@ pub(crate) struct Session {
     /// Prints nothing if results are written to standard output.
     pub(crate) text: TextOutput,
     tags: Vec<(String, String)>,
+    baselines: Baselines,
     files: OpenFiles,
 }
 
@@ -58,6 +60,7 @@ impl Session {
                 stop,
                 text: TextOutput::new(false),
                 tags: Vec::new(),
+                baselines: Baselines::default(),
                 files: OpenFiles {
                     json: Output::open_if(Some(&PathBuf::from("-")))?,
                     csv: None,
@@ -73,6 +76,7 @@ impl Session {
             stop,
             text: TextOutput::new(!uses_stdout),
             tags: files.tags.clone(),
+            baselines: Baselines::open(files)?,
             files: OpenFiles {
                 json: Output::open_if(files.json.as_ref())?,
                 csv: Output::open_if(files.csv.as_ref())?,
@@ -96,19 +100,21 @@ impl Session {
         exit_code(written, &results, interrupted)
     }
 
-    /// Prints the remaining text, adds the notices to the results, and writes the files. If one file
+    /// Prints the remaining text, adds the notices and the tags to the results, compares them with the baseline, and
+    /// writes the files. If one file
     /// cannot be written, writes the others anyway, and returns the first error.
-    pub(crate) fn write(self, results: &mut Results) -> Result<(), Failure> {
+    pub(crate) fn write(mut self, results: &mut Results) -> Result<(), Failure> {
         results.add_notices(take_notices());
         for finding in &mut results.findings {
             finding.run_mut().tags.extend(self.tags.iter().cloned());
         }
+        self.baselines.print_changes(results, &mut self.text);
         let OpenFiles {
             json,
             csv,
             samples_csv,
         } = self.files;
-        let mut done = self.text.finish();
+        let mut done = self.text.finish().and(self.baselines.save(results));
         if let Some(output) = json {
             done = done.and(output.finish(|writer| results.write_json(writer)));
         }

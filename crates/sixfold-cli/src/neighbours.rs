@@ -1,7 +1,6 @@
 //! `sixfold neighbours`: measures searches for neighbours in space.
 
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
 
 use comfy_table::Cell;
 use sixfold_results::numbers::figure;
@@ -11,7 +10,7 @@ use sixfold_study::{NeighboursSettings, Progress};
 use crate::arguments::Neighbours;
 use crate::facts_text::facts_text;
 use crate::failure::Failure;
-use crate::launches;
+use crate::launches::{self, Plan};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -38,24 +37,21 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
         arguments.launching.launches,
         study_mesh.polygons.face_count(),
     );
-    let count = launches::count(given, settings.effort, mesh, faces)?;
     let bar = Bar::new();
-    let report = match count {
-        1 => {
-            let mut show = |at: Progress<'_>| bar.show(at);
-            let report =
-                sixfold_study::neighbours(&study_mesh, &settings, &session.stop, &mut show);
-            report.map_err(Failure::usage)
-        }
-        count => {
-            let show = |done: f64, what: &str| bar.set(done, what);
-            launches::measure(count, settings.effort, None, &session.stop, &show)
-        }
+    let plan = Plan {
+        count: launches::count(given, settings.effort, mesh, faces)?,
+        effort: settings.effort,
+        mesh: None,
+        stop: &session.stop,
     };
+    let reports = Some(vec![study_mesh.report()]);
+    let report = plan.measure(reports, &|done, what| bar.set(done, what), || {
+        let mut show = |at: Progress<'_>| bar.show(at);
+        let report = sixfold_study::neighbours(&study_mesh, &settings, &session.stop, &mut show);
+        report.map_err(Failure::usage)
+    });
     bar.clear();
-    let mut report: NeighboursReport = report?;
-    report.mesh = study_mesh.report();
-    report.interrupted |= session.stop.load(Ordering::Relaxed);
+    let report: NeighboursReport = report?;
     print(&report, &mut session.text);
     session.finish(with_command(report, false).into())
 }

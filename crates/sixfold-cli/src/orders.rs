@@ -1,7 +1,7 @@
 //! `sixfold orders`: measures how the order of a mesh in memory affects each backend.
 
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Cell, Table};
 use sixfold::shapes::Order;
@@ -12,7 +12,7 @@ use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches;
+use crate::launches::{self, Plan};
 use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -41,21 +41,19 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     print_before_measuring(&study_mesh, &settings, &mut session.text);
     let faces = study_mesh.polygons.face_count();
     let given = arguments.launching.launches;
-    let report = match launches::count(given, settings.effort, mesh, Order::ALL.len() * faces)? {
-        1 => measure(&study_mesh, &settings, &session.stop, &Bar::new())?,
-        count => {
-            let bar = Bar::new();
-            let show = |done: f64, what: &str| bar.set(done, what);
-            let report: Result<OrdersReport, Failure> =
-                launches::measure(count, settings.effort, None, &session.stop, &show);
-            bar.clear();
-            let interrupted = session.stop.load(Ordering::Relaxed);
-            let mut report = report?;
-            report.mesh = study_mesh.report();
-            report.interrupted |= interrupted;
-            report
-        }
+    let bar = Bar::new();
+    let plan = Plan {
+        count: launches::count(given, settings.effort, mesh, Order::ALL.len() * faces)?,
+        effort: settings.effort,
+        mesh: None,
+        stop: &session.stop,
     };
+    let reports = Some(vec![study_mesh.report()]);
+    let report = plan.measure(reports, &|done, what| bar.set(done, what), || {
+        measure(&study_mesh, &settings, &session.stop, &bar)
+    });
+    bar.clear();
+    let report = report?;
     print(&report, &mut session.text);
     session.finish(with_command(report, arguments.triangulate).into())
 }

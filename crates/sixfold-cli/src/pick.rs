@@ -2,19 +2,18 @@
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
-use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked, Results};
+use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
 
 use crate::arguments::{Pick, ReadFiles};
-use crate::baselines::Baselines;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::launches::{self, Launch};
+use crate::launches::{self, Launch, Plan};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -32,7 +31,6 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.trace {
         return run_trace(path, arguments);
     }
-    let baselines = Baselines::open(&arguments.baselines)?;
     let workload = workload(&arguments.workload)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
@@ -63,16 +61,24 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     if Launch::current().is_none() {
         print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
     }
+    let plan = Plan {
+        count,
+        effort: settings.effort,
+        mesh: None,
+        stop: &session.stop,
+    };
     let bar = Bar::new();
-    let report = measure(&study_meshes, &settings, count, &session.stop, &bar);
+    let reports = study_meshes.iter().map(StudyMesh::report).collect();
+    let report = plan.measure(Some(reports), &|done, what| bar.set(done, what), || {
+        let mut show = |done: f64, what: &str| bar.set(done, what);
+        let report = sixfold_study::pick(&study_meshes, &settings, &session.stop, &mut show);
+        report.map_err(Failure::usage)
+    });
     bar.clear();
-    let report = report?;
+    let report: PickReport = report?;
     print(&report, &mut session.text);
     let none_qualifies = report.ranking.is_empty() && !report.interrupted;
-    let results: Results = with_command(report, arguments.triangulate).into();
-    baselines.print_changes(&results, &mut session.text);
-    baselines.save(&results)?;
-    let code = session.finish(results)?;
+    let code = session.finish(with_command(report, arguments.triangulate).into())?;
     if none_qualifies {
         print_stderr(
             "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the \
@@ -81,26 +87,6 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::from(NONE_QUALIFIES));
     }
     Ok(code)
-}
-
-/// Measures the workload on each mesh, in this process or in several launches.
-fn measure(
-    study_meshes: &[StudyMesh],
-    settings: &PickSettings,
-    launches: u32,
-    stop: &AtomicBool,
-    bar: &Bar,
-) -> Result<PickReport, Failure> {
-    if launches == 1 {
-        let mut show = |done: f64, what: &str| bar.set(done, what);
-        let report = sixfold_study::pick(study_meshes, settings, stop, &mut show);
-        return report.map_err(Failure::usage);
-    }
-    let show = |done: f64, what: &str| bar.set(done, what);
-    let mut report: PickReport = launches::measure(launches, settings.effort, None, stop, &show)?;
-    report.meshes = study_meshes.iter().map(StudyMesh::report).collect();
-    report.interrupted |= stop.load(Ordering::Relaxed);
-    Ok(report)
 }
 
 /// Ranks the structures for the calls of a trace.

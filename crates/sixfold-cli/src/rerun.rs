@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
 use sixfold_results::numbers::counted;
-use sixfold_results::{Conclusion, Fate, Finding, MeshReport, Results, Run, conclusions};
+use sixfold_results::{
+    Conclusion, Fate, Finding, MeshReport, Results, Run, conclusions, differences,
+};
 use sixfold_study::start_run;
 
 use crate::arguments::Rerun;
@@ -18,8 +20,8 @@ use crate::text::{TextOutput, hanging_indent, sanitize};
 
 /// The exit code if a conclusion is reversed, or if results differ between backends.
 const REVERSED: u8 = 1;
-/// Options that name files to write, and so are not repeated.
-const OUTPUTS: [&str; 7] = [
+/// Options with a value that are not repeated: those that name files to write, and those that are only for a report.
+const LEFT_OUT: [&str; 9] = [
     "--json",
     "--csv",
     "--samples-csv",
@@ -27,6 +29,8 @@ const OUTPUTS: [&str; 7] = [
     "--figures",
     "--save-baseline",
     "--baseline",
+    "--labs",
+    "--shard",
 ];
 /// Options without a value that are not repeated.
 const FLAGS: [&str; 1] = ["--resume"];
@@ -138,8 +142,8 @@ fn without_outputs(words: &[String]) -> Vec<String> {
         let name = word.split_once('=').map_or(word.as_str(), |(name, _)| name);
         match () {
             () if FLAGS.contains(&name) => {}
-            () if OUTPUTS.contains(&name) && name != word => {}
-            () if OUTPUTS.contains(&name) => {
+            () if LEFT_OUT.contains(&name) && name != word => {}
+            () if LEFT_OUT.contains(&name) => {
                 words.next();
             }
             () => kept.push(word.clone()),
@@ -187,7 +191,7 @@ fn print_environment(run: &Run, text: &mut TextOutput) {
         tags: run.tags.clone(),
         ..start_run(run.settings.clone())
     };
-    for change in run.differences(&now) {
+    for change in differences(run, &now) {
         let first = format!("{:<13}", change.what);
         let both = format!("{} → {}", change.before, change.after);
         text.print_line(&hanging_indent(&first, &sanitize(&both)));

@@ -2,16 +2,15 @@
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use sixfold_results::{BackendReport, Environment, Finding, Report, Run, Timer};
-use sixfold_study::{Operation, Settings, StudyError, StudyMesh};
+use sixfold_study::{Operation, Progress, Settings, StudyError, StudyMesh};
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
-use crate::baselines::Baselines;
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
-use crate::launches::{self, Launch};
+use crate::launches::{self, Launch, Plan};
 use crate::left_out::left_out_notes;
 use crate::listed_folder::ListedFolder;
 use crate::load;
@@ -79,7 +78,6 @@ fn run_single(
     mesh: Option<&Path>,
     paper: Option<&ListedFolder>,
 ) -> Result<ExitCode, Failure> {
-    let baselines = Baselines::open(&arguments.baselines)?;
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = load::mesh_or_built_in(
         mesh,
@@ -108,8 +106,7 @@ fn run_single(
         Ok(report) => {
             print(&report, &mut session.text);
             let mut results = finding(report, arguments).into();
-            baselines.print_changes(&results, &mut session.text);
-            let written = session.write(&mut results).and(baselines.save(&results));
+            let written = session.write(&mut results);
             let written = written.and(paper::write_if(paper, &results, &command_line()));
             exit_code(written, &results, results.is_interrupted())
         }
@@ -133,20 +130,20 @@ pub(crate) fn measure(
     stop: &AtomicBool,
     show: &dyn Fn(f64, &str),
 ) -> Result<Report, Failure> {
-    if launches == 1 {
-        let report = sixfold_study::study(study_mesh, settings, stop, &mut |at| {
-            show(at.done, &at.step())
-        });
-        return report.map_err(|error| match error {
+    let plan = Plan {
+        count: launches,
+        effort: settings.effort,
+        mesh: name,
+        stop,
+    };
+    plan.measure(Some(vec![study_mesh.report()]), show, || {
+        let mut show = |at: Progress<'_>| show(at.done, &at.step());
+        let report = sixfold_study::study(study_mesh, settings, stop, &mut show);
+        report.map_err(|error| match error {
             StudyError::NoneHolds { .. } => Failure::unsupported(error),
             error => Failure::usage(error),
-        });
-    }
-    let mut report: Report = launches::measure(launches, settings.effort, name, stop, show)?;
-    report.mesh = study_mesh.report();
-    // An interruption between two launches is in none of them.
-    report.interrupted |= stop.load(Ordering::Relaxed);
-    Ok(report)
+        })
+    })
 }
 
 /// Completes a study by the arguments that only the command knows.

@@ -118,11 +118,6 @@ fn a_pick_of_three_launches_ranks_by_their_times() {
     let one = document(&sixfold, "one.json");
     assert_eq!(one["findings"].as_array().map(Vec::len), Some(1));
     let finding = &one["findings"][0];
-    let counts = |ranking: &Value| -> Vec<usize> {
-        let rows = ranking.as_array().expect("rows").iter();
-        rows.map(|row| row["launch_ns"].as_array().expect("launches").len())
-            .collect()
-    };
     let backends = counts(&finding["ranking"]).len();
     assert!(backends >= 6, "{finding}");
     assert_eq!(counts(&finding["ranking"]), vec![3; backends]);

@@ -145,6 +145,14 @@ fn later_results_are_compared_with_a_baseline() {
         "{compared:?}"
     );
     assert_eq!(fs::read_to_string(&kept).ok(), Some(first), "it stays");
+    // Tags are in the baseline, and in what is compared with it.
+    run_ok(
+        &sixfold,
+        &with(&["--save-baseline", "tagged", "--tag", "a=b"]),
+    );
+    let tagged = run_ok(&sixfold, &with(&["--baseline", "tagged", "--tag", "a=c"]));
+    assert!(tagged.stdout.contains("a            b → c"), "{tagged:?}");
+    fs::remove_file(sixfold.folder().join(".sixfold/tagged.json")).expect("it was saved");
     let other = sixfold.run(&with(&["--baseline", "other"]));
     assert!(other.stderr.contains("only main"), "{other:?}");
     // A baseline of a pick has nothing in common with a study.
@@ -242,6 +250,18 @@ fn saved_results_are_measured_again_and_their_conclusions_confirmed() {
     let expected = "vertex_normal on grid.obj: polygon-soup was the fastest, and now half-edge is.";
     assert!(words.contains(expected), "{words}");
 
+    // The labs of a report are not measured again.
+    let report = ["--labs", "none", "--report", "page"];
+    run_ok(
+        &sixfold,
+        &[&study[..8], &["--launches", "3"], &report].concat(),
+    );
+    let again = run_ok(&sixfold, &["rerun", "page"]);
+    assert!(
+        again.stdout.contains("Of 1 conclusion, 1 stand"),
+        "{again:?}"
+    );
+
     // The mesh may be in another folder, but must be the same.
     fs::create_dir(sixfold.folder().join("moved")).expect("a folder");
     let [here, there] = ["grid.obj", "moved/grid.obj"].map(|name| sixfold.folder().join(name));
@@ -252,7 +272,11 @@ fn saved_results_are_measured_again_and_their_conclusions_confirmed() {
         2,
         "give its folder with --meshes",
     );
-    run_ok(&sixfold, &["rerun", "old.json", "--meshes", "moved"]);
+    let moved = run_ok(&sixfold, &["rerun", "old.json", "--meshes", "moved"]);
+    assert!(
+        moved.stdout.contains("Of 1 conclusion, 1 stand"),
+        "{moved:?}"
+    );
     sixfold.grid("moved/grid.obj", 11);
     let arguments = ["rerun", "old.json", "--meshes", "moved"];
     assert_refused(&sixfold, &arguments, 2, "its content differs");

@@ -102,10 +102,7 @@ impl SizeReport {
     fn all_rows<'s>(&'s self, run: &'s Run) -> Rows<'s> {
         Rows {
             run,
-            results: &self.results,
-            refusals: &self.refusals,
-            samples: &self.samples,
-            control: self.control.as_ref(),
+            rows: self.launch_rows(),
         }
     }
 }

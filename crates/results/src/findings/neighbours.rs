@@ -85,10 +85,7 @@ impl NeighboursReport {
     fn all_rows(&self) -> Rows<'_> {
         Rows {
             run: &self.run,
-            results: &self.results,
-            refusals: &[],
-            samples: &self.samples,
-            control: None,
+            rows: self.launch_rows(),
         }
     }
 }

@@ -69,10 +69,7 @@ impl OrdersReport {
     fn all_rows(&self) -> Rows<'_> {
         Rows {
             run: &self.run,
-            results: &self.results,
-            refusals: &self.refusals,
-            samples: &self.samples,
-            control: self.control.as_ref(),
+            rows: self.launch_rows(),
         }
     }
 }

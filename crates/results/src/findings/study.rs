@@ -149,10 +149,7 @@ impl Report {
     fn all_rows(&self) -> Rows<'_> {
         Rows {
             run: &self.run,
-            results: &self.results,
-            refusals: &self.refusals,
-            samples: &self.samples,
-            control: self.control.as_ref(),
+            rows: self.launch_rows(),
         }
     }
 

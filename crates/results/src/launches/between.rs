@@ -4,8 +4,8 @@
 //! for a minute, so the times of two studies cannot tell whether the machine or the whole program became slower
 //! ([`LASTING_SPEED`]). But what slows the machine down slows all rows down. So a row is compared with the other
 //! rows: its change is relative to the median change of all, and its error comes from the launches after their
-//! common speed was taken out. If the median change is large, rows may differ by half as much ([`UNEVEN`]): a busy neighbour slows
-//! queries of large tables down more than computation.
+//! common speed was taken out. If the median change is large, rows may differ by half as much ([`UNEVEN`]): a busy
+//! neighbour slows queries of large tables down more than computation.
 
 use std::array::from_fn;
 
@@ -26,8 +26,7 @@ pub struct LaunchPair<'r> {
 
 /// The factor by which the speed of a whole machine may change between two studies that show no variation.
 ///
-/// The largest change in 190 comparisons of studies of a minute on a virtual machine with busy neighbours was 1.29
-/// (reports/repeatability).
+/// The largest change between any two of twenty studies of a minute on a virtual machine with busy neighbours was 1.29.
 pub const LASTING_SPEED: f64 = 1.3;
 
 /// The part of a common change by which the change of a single row may differ from it.

@@ -339,9 +339,9 @@ pub(crate) fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64
     Some((mean, interval))
 }
 
-/// Widens the interval of a mean over meshes if the errors of the single meshes give a wider one. The variation from mesh to
-/// mesh includes these errors, but meshes may agree by chance. `half_widths` are those of the intervals on the meshes, on the
-/// scale of logarithms.
+/// Widens the interval of a mean over meshes if the errors of the single meshes give a wider one. The variation
+/// from mesh to mesh includes these errors, but meshes may agree by chance. `half_widths` are those of the
+/// intervals on the meshes, on the scale of logarithms.
 pub(crate) fn with_errors(
     interval: Option<[f64; 2]>,
     mean: f64,

@@ -73,10 +73,12 @@ one backend, by the same command, on the same mesh and in the same case (order, 
 The ratio of a measurement is the time in the second file, divided by the time in the first file.
 
 A measurement counts as slower if chance does not explain it: if the program did not change, at most
-one of 200 comparisons finds anything slower. The times of the launches show what chance does: files
-with one launch cannot be compared, unless a time doubled. A measurement is also slower if it became
-slower than the others did, on a machine that is faster or slower as a whole. Ratios up to --noise
-count as equal. If chance could explain a change by twice --noise, the measurement cannot be told:
+one of 200 comparisons finds a change. The times of the launches show what chance does: files with
+one launch cannot be compared, unless a time doubled. The machine may be slower as a whole in one of
+the files, so a measurement is compared with the others: it is slower if it changed by more than
+they did. With fewer than six, only a change by more than 1.3 can be told from the machine. If all
+together take 1.3 times as long, the whole program is slower. Ratios up to --noise count as equal.
+If chance could explain a change by the square of --noise (10 %), the measurement cannot be told:
 use fewer --operations, a longer --budget or more --launches for both files.
 
 Report: report.html needs no network, report.md and figures have the same content, and changes.json

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold_results::{Need, Policy};
 
-use super::{BaselineArgs, EffortArgs, LaunchArgs, ReadFiles, ResultFiles, backend, seed};
+use super::{EffortArgs, LaunchArgs, ReadFiles, ResultFiles, backend, seed};
 
 const PICK_EXAMPLES: &str = "Examples:
   sixfold pick bunny.obj
@@ -82,8 +82,6 @@ pub(crate) struct Pick {
     pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
-    #[command(flatten)]
-    pub(crate) baselines: BaselineArgs,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
 }

@@ -19,11 +19,6 @@ pub(crate) struct ResultFiles {
     /// Keep KEY=VALUE in the results; may be repeated
     #[arg(long = "tag", value_name = "KEY=VALUE", value_parser = tag)]
     pub(crate) tags: Vec<(String, String)>,
-}
-
-/// The results with which new ones are compared.
-#[derive(Clone, Debug, Default, Args)]
-pub(crate) struct BaselineArgs {
     /// Keep the results as the baseline NAME, in the folder .sixfold
     #[arg(long, value_name = "NAME", value_parser = baseline_name)]
     pub(crate) save_baseline: Option<String>,

@@ -9,7 +9,7 @@ use crate::simulated::normal;
 
 /// Number of rows of a simulated study.
 const ROWS: usize = 40;
-/// The level at which a comparison of so many rows is wrong once in 200 times.
+/// The level for each row, so that one of 200 comparisons finds a change by chance.
 const LEVEL: f64 = 1.0 / 200.0 / (2 * ROWS) as f64;
 
 type Launches = Vec<Vec<Option<f64>>>;
