@@ -143,6 +143,9 @@ pub(crate) fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
     };
     if !rows.is_empty() {
         text.print_line(&changes_table(&rows));
+        if rows.iter().any(|row| row.verdict == Verdict::CannotTell) {
+            text.print_line("?: cannot be told from chance");
+        }
         text.print_line("");
     }
     text.print_list("- ", &changes.sentences);
@@ -191,7 +194,7 @@ fn changes_table(rows: &[&Change]) -> String {
             Verdict::Faster => "faster",
             Verdict::Slower => "slower",
             Verdict::Same => "",
-            Verdict::CannotTell => "cannot tell",
+            Verdict::CannotTell => "?",
         };
         let place = columns
             .iter()

@@ -114,7 +114,15 @@ fn a_change_is_shown_and_can_set_the_exit_code() {
     assert_eq!(cannot.code, Some(3), "{cannot:?}");
     assert!(cannot.stdout.contains("12 cannot be told"), "{cannot:?}");
     assert!(cannot.stdout.contains("--launches 3"), "{cannot:?}");
-    run_ok(&sixfold, &["compare", "a.json", "one.json"]);
+    let all = run_ok(&sixfold, &["compare", "a.json", "one.json", "--all"]);
+    assert!(
+        all.stdout.contains("?: cannot be told from chance"),
+        "{all:?}"
+    );
+    assert!(
+        all.stdout.lines().all(|line| line.chars().count() <= 80),
+        "{all:?}"
+    );
     let piped = run_ok(&sixfold, &["compare", "a.json", "b.json", "--json", "-"]);
     serde_json::from_str::<Value>(&piped.stdout).expect("JSON alone");
 }
