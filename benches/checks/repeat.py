@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Repeats the default study many times, and reports how far one study predicts the others.
 
-Usage: repeat.py SIXFOLD OUTPUT [--studies 20] [--budget 60s] [--keep FOLDER]
+Usage: repeat.py SIXFOLD OUTPUT [--studies 20] [--budget 60s] [--operations LIST] [--keep FOLDER]
 
 Measures the built-in mesh with `SIXFOLD study`, one study after the other, each with another seed. Writes the report to
-the Markdown file OUTPUT, and the figures of all studies beside it, to `studies.csv`.
+the Markdown file OUTPUT, and the figures of all studies beside it, to a CSV file of the same name.
 
 Then compares every two studies with `SIXFOLD compare --fail-if-slower`. All have measured the same program, so each study
 that is found slower is a false alarm. To see what is overlooked, the script makes one time of the second study 10 % longer,
@@ -31,11 +31,11 @@ SLOWDOWN = 1.1
 SAME, SLOWER, CANNOT_TELL = 0, 1, 3
 
 
-def measured(sixfold, budget, folder, number):
+def measured(sixfold, options, folder, number):
     """Returns the document of one study, and measures it if it is not in the folder."""
     place = folder / f"study-{number}.json"
     if not place.exists():
-        command = [sixfold, "study", "--budget", budget, "--seed", str(number), "--json", place]
+        command = [sixfold, "study", *options, "--seed", str(number), "--json", place]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         print(f"study {number}", file=sys.stderr)
     return json.loads(place.read_text())
@@ -145,7 +145,7 @@ def alarms(sixfold, documents):
     return codes, times, slower, open_times, found
 
 
-def report(sixfold, budget, documents):
+def report(sixfold, output, options, documents):
     studies = [rows_of(document) for document in documents]
     run = documents[0]["runs"][0]
     machine, count = run["environment"], len(studies)
@@ -156,10 +156,10 @@ def report(sixfold, budget, documents):
     named, usual = winners(studies)
     lines = [
         "# Repeated studies", "",
-        "```sh", f"benches/checks/repeat.py sixfold reports/repeatability/output.md --studies {count} --budget {budget}", "```", "",
+        "```sh", f"benches/checks/repeat.py sixfold reports/repeatability/{output.name} --studies {count} {' '.join(options)}", "```", "",
         f"{machine['cpu_model']}, {machine['cores']} cores, Linux {machine['kernel'] or platform.release()}; {machine['rustc']}; "
         f"sixfold {machine['commit'] or machine['sixfold']}.", "",
-        f"{count} studies of the built-in mesh, {budget} each, ran one after the other. A study has {run['settings']['launches'] or 1} "
+        f"{count} studies of the built-in mesh, {run['settings']['budget_s']:.0f} s each, ran one after the other. A study has {run['settings']['launches'] or 1} "
         f"launches and {len(every) // count} times. {percent(disturbed, taken)} of the samples were disturbed by other programs.", "",
         "## Intervals", "", "| 95 % intervals of | contain the median of the other studies | number of intervals |", "|---|---|---|",
     ]
@@ -207,15 +207,17 @@ def main():
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--studies", type=int, default=20)
     parser.add_argument("--budget", default="60s")
+    parser.add_argument("--operations")
     parser.add_argument("--keep", type=pathlib.Path)
     chosen = parser.parse_args()
     sixfold = str(pathlib.Path(chosen.sixfold).resolve()) if "/" in chosen.sixfold else chosen.sixfold
     with tempfile.TemporaryDirectory() as scratch:
         folder = chosen.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        documents = [measured(sixfold, chosen.budget, folder, number) for number in range(1, chosen.studies + 1)]
-    chosen.output.write_text(report(sixfold, chosen.budget, documents))
-    write_figures(chosen.output.with_name("studies.csv"), documents)
+        options = ["--budget", chosen.budget] + (["--operations", chosen.operations] if chosen.operations else [])
+        documents = [measured(sixfold, options, folder, number) for number in range(1, chosen.studies + 1)]
+    chosen.output.write_text(report(sixfold, chosen.output, options, documents))
+    write_figures(chosen.output.with_suffix(".csv"), documents)
 
 
 if __name__ == "__main__":

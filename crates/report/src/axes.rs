@@ -1,7 +1,7 @@
 //! Logarithmic axes, the curves of a chart, and places of dots and labels.
 
 use crate::canvas::{Canvas, Style, text_width};
-use crate::colours::{GRID_COLOUR, TEXT_COLOUR};
+use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
 
 /// A logarithmic scale from values to pixels.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +57,16 @@ pub(crate) struct Curve {
     /// The text beside the last point.
     pub(crate) name: String,
     pub(crate) colour: &'static str,
-    /// The points with the titles of their marks.
-    pub(crate) points: Vec<([f64; 2], String)>,
+    pub(crate) points: Vec<CurvePoint>,
+}
+
+/// A point of a curve.
+pub(crate) struct CurvePoint {
+    pub(crate) at: [f64; 2],
+    /// The title of its mark.
+    pub(crate) title: String,
+    /// Whether the mark is open: the value was measured only on a sample.
+    pub(crate) is_sampled: bool,
 }
 
 impl Axes<'_> {
@@ -103,11 +111,16 @@ impl Axes<'_> {
         let [bottom, top] = self.y.pixels;
         let mut names = Vec::new();
         for curve in curves {
-            let places = curve.points.iter().map(|(point, _)| self.place(*point));
+            let places = curve.points.iter().map(|point| self.place(point.at));
             let places: Vec<[f64; 2]> = places.collect();
             canvas.polyline(&places, curve.colour, 1.5);
-            for ((_, title), &place) in curve.points.into_iter().zip(&places) {
-                canvas.mark(title, |canvas| canvas.circle(place, 2.5, curve.colour));
+            for (point, &place) in curve.points.into_iter().zip(&places) {
+                canvas.mark(point.title, |canvas| {
+                    canvas.circle(place, 2.5, curve.colour);
+                    if point.is_sampled {
+                        canvas.circle(place, 1.5, BACKGROUND);
+                    }
+                });
             }
             if let Some(&last) = places.last() {
                 names.push((curve.name, last, curve.colour));

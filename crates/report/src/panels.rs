@@ -1,7 +1,7 @@
 //! Several small line charts in one SVG figure.
 
 use crate::Picture;
-use crate::axes::{Axes, Curve, LogScale};
+use crate::axes::{Axes, Curve, CurvePoint, LogScale};
 use crate::canvas::{Canvas, Style};
 use crate::colours::column_colour;
 use crate::figure::count_tick;
@@ -68,11 +68,15 @@ fn draw(panel: &Panel, x: [f64; 2], y: [f64; 2]) -> Canvas {
     };
     axes.draw(&mut canvas);
     let curves = panel.lines.iter().map(|(name, points)| {
-        let title = |&(x, y): &(f64, f64)| ([x, y], format!("{name}: {x:.0}, {y:.3}"));
+        let point = |&(x, y): &(f64, f64)| CurvePoint {
+            at: [x, y],
+            title: format!("{name}: {x:.0}, {y:.3}"),
+            is_sampled: false,
+        };
         Curve {
             name: (*name).into(),
             colour: column_colour(name),
-            points: points.iter().map(title).collect(),
+            points: points.iter().map(point).collect(),
         }
     });
     axes.draw_curves(&mut canvas, curves.collect());

@@ -3,10 +3,12 @@
 
 use crate::figure::Table;
 use crate::figures::break_even;
+use sixfold_results::launches::FEWEST_LAUNCHES;
 use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{
-    BackendReport, OrdersReport, Overall, Pool, Purpose, Report, Results, Standing, leaders,
+    BackendReport, OrdersReport, Overall, Pool, Purpose, Report, ResultRow, Results, Standing,
+    leaders,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -354,26 +356,32 @@ pub(crate) fn fastest_of_study(study: &Report) -> Option<String> {
         (false, _) => format!("Fastest: {parts}."),
         (true, None) => format!("Fastest (provisional, too few samples): {parts}."),
         (true, Some(budget)) => {
-            format!("Fastest (provisional, too few samples; {budget} gives enough): {parts}.")
+            format!("Fastest (provisional, too few samples; {budget}): {parts}.")
         }
     })
 }
 
-/// Returns the option that gives about enough samples for a winner; `None` if this is unknown.
+/// Returns what gives about enough samples for a winner; `None` if this is unknown.
 fn enough(study: &Report) -> Option<String> {
-    let measured = study.results.iter().filter(|row| row.median_ns.is_some());
-    let fewest = measured
-        .map(|row| row.samples)
-        .min()
-        .filter(|&samples| samples > 0)?;
+    let open = study.results.iter();
+    let open = open.filter(|row| row.median_ns.is_some() && row.standing.is_none());
+    let open = open.filter(|row| !row.has_enough_samples());
     let settings = &study.run.settings;
-    let factor = (FEWEST_OF_A_WINNER as f64 / fewest as f64).max(1.0);
-    Some(match (settings.rounds, settings.budget_s) {
-        (Some(_), _) => format!("--rounds {FEWEST_OF_A_WINNER}"),
-        // A fifth more, because the first samples also find out how long the others take.
-        (None, Some(seconds)) => format!("--budget {}s", (1.2 * factor * seconds).ceil()),
-        (None, None) => return None,
-    })
+    let known = |row: &ResultRow| match settings.launches {
+        Some(_) => row.launch_ns.iter().flatten().count(),
+        None => row.samples,
+    };
+    let fewest = open.map(known).min()?.max(1);
+    match (settings.rounds, settings.launches) {
+        (Some(_), Some(_)) => None,
+        (Some(_), None) => Some(format!("--rounds {FEWEST_OF_A_WINNER} gives enough")),
+        (None, launches) => {
+            let needed = launches.map_or(FEWEST_OF_A_WINNER, |_| FEWEST_LAUNCHES);
+            // Half as much again, because the first runs also find out how long the others take.
+            let factor = 1.5 * needed as f64 / fewest as f64;
+            Some(format!("{} times the --budget gives enough", factor.ceil()))
+        }
+    }
 }
 
 /// Returns the fastest backends of each kind of work over several meshes, with the number of meshes on which
@@ -521,12 +529,7 @@ fn few_queries(study: &Report) -> Option<String> {
     let (name, steps) = break_even::sequence(study)?;
     let steps: Vec<String> = steps
         .iter()
-        .map(|(name, most)| {
-            format!(
-                "{name} up to {}",
-                counted(*most, "visited element", "visited elements")
-            )
-        })
+        .map(|(name, most)| format!("{name} up to {most}"))
         .collect();
     (!steps.is_empty()).then(|| {
         format!(

@@ -152,20 +152,35 @@ fn half_width(values: &[f64], trimmed: usize, lasting: f64) -> Option<f64> {
     half_width.is_finite().then_some(half_width)
 }
 
-/// The error of a mean.
+/// The variance of values, or the error of their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeanError {
-    /// The square of the standard error.
+    /// The square of the standard deviation or error.
     pub(crate) squared: f64,
     /// The degrees of freedom of the estimate.
     pub(crate) freedom: f64,
 }
 
-/// Returns the error of the mean of `values` without the `trimmed` smallest and largest ones, from the values with
-/// these replaced by their neighbours (Tukey and McLaughlin 1963). `lasting` is the variance that the values do not
-/// show, relative to that which they show. `None` with fewer than [`FEWEST_LAUNCHES`] values, or if a value is not
-/// finite.
+impl MeanError {
+    /// Returns the error of a mean of `count` values with this variance, see [`squared_error`].
+    pub(crate) fn of_mean(self, count: usize, lasting: f64) -> Self {
+        Self {
+            squared: self.squared * (1.0 / count as f64 + lasting),
+            ..self
+        }
+    }
+}
+
+/// Returns the error of the mean of `values` without the `trimmed` smallest and largest ones. `lasting` is the
+/// variance that the values do not show, relative to that which they show. `None` as from [`variance`].
 pub(crate) fn squared_error(values: &[f64], trimmed: usize, lasting: f64) -> Option<MeanError> {
+    Some(variance(values, trimmed)?.of_mean(values.len(), lasting))
+}
+
+/// Returns the variance of `values` for the mean without the `trimmed` smallest and largest ones, from the values
+/// with these replaced by their neighbours (Tukey and McLaughlin 1963). `None` with fewer than [`FEWEST_LAUNCHES`]
+/// values that are kept, or if a value is not finite.
+pub(crate) fn variance(values: &[f64], trimmed: usize) -> Option<MeanError> {
     let count = values.len();
     let kept = count.checked_sub(2 * trimmed)?;
     if kept < FEWEST_LAUNCHES || !values.iter().all(|value| value.is_finite()) {
@@ -181,9 +196,8 @@ pub(crate) fn squared_error(values: &[f64], trimmed: usize, lasting: f64) -> Opt
     let mean = winsorised.iter().sum::<f64>() / count as f64;
     let squares: f64 = winsorised.iter().map(|value| (value - mean).powi(2)).sum();
     let part_kept = kept as f64 / count as f64;
-    let variance = squares / (count - 1) as f64 / part_kept.powi(2);
     Some(MeanError {
-        squared: variance * (1.0 / count as f64 + lasting),
+        squared: squares / (count - 1) as f64 / part_kept.powi(2),
         freedom: (kept - 1) as f64,
     })
 }

@@ -60,6 +60,13 @@ pub fn figure(number: f64) -> String {
     }
 }
 
+/// Formats a count that is only roughly known, with two significant digits: `7`, `480`, `72,000`.
+pub fn approximate(number: f64) -> String {
+    let digits = number.abs().max(1.0).log10().floor() as i32;
+    let unit = 10_f64.powi((digits - 1).max(0));
+    grouped(((number / unit).round() * unit) as usize)
+}
+
 /// Formats a number with a noun in the singular or plural: `1 edge`, `3 edges`.
 pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     let word = if number == 1 { singular } else { plural };
@@ -143,6 +150,8 @@ mod tests {
         assert_eq!(duration(999.7), "1.00 µs");
         assert_eq!(bytes(999_700), "1.00 MB");
         assert_eq!(times(18_130.0), "18,100 ×");
+        let rough = [0.4, 7.2, 71.6, 99.6, 484.0, 71_781.0, 9_960.0].map(approximate);
+        assert_eq!(rough, ["0", "7", "72", "100", "480", "72,000", "10,000"]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Ranks backends by their times.
 
-use crate::launches::{ratio_over_launches, time_over_launches};
+use crate::launches::{FEWEST_LAUNCHES, ratio_over_launches, time_over_launches};
 use crate::rows::Standing;
 use crate::statistics::Median;
 use crate::time::Time;
@@ -15,6 +15,15 @@ pub const EQUAL: f64 = 1.05;
 pub const CLEAR_DIFFERENCE: f64 = 2.0;
 /// Minimum number of samples of a backend that can be fastest, or tied with the fastest.
 pub const FEWEST_OF_A_WINNER: usize = 4;
+
+/// Returns whether a time can be ranked: it is from several launches, or from enough samples of the only launch.
+/// `launches` has the time in each launch if there are several.
+pub fn has_enough(samples: usize, launches: &[Option<f64>]) -> bool {
+    match launches {
+        [] => samples >= FEWEST_OF_A_WINNER,
+        launches => launches.iter().flatten().count() >= FEWEST_LAUNCHES,
+    }
+}
 
 /// The time of one backend, and its comparison with the fastest backend.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sixfold_core::{Capabilities, Facts, TableBytes};
 
-use crate::ranking::NO_DIFFERENCE;
+use crate::ranking::{NO_DIFFERENCE, has_enough};
 use crate::read::ReadError;
 use crate::statistics::{median, undisturbed};
 
@@ -254,6 +254,11 @@ impl ResultRow {
             runs_per_sample: 1,
             ..Self::default()
         }
+    }
+
+    /// Returns whether the time is from enough launches or samples to be ranked.
+    pub fn has_enough_samples(&self) -> bool {
+        has_enough(self.samples, &self.launch_ns)
     }
 
     /// Returns `first_ns` divided by `median_ns`; `None` if a value is unknown.

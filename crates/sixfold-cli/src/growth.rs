@@ -128,7 +128,7 @@ pub(crate) fn help() -> String {
 fn print(report: &GrowthReport, text: &mut TextOutput) {
     text.print_line("");
     text.print_answer(&report.sentences, &report.warnings);
-    let mut signs = Signs::new("fastest at this size", text.bold());
+    let mut signs = Signs::new(text.bold());
     let operations = report.sizes.first().map_or(&[][..], |size| &size.results);
     for rows in operations.chunk_by(|a, b| a.operation == b.operation) {
         text.print_line(&table(report, &rows[0], &mut signs));
@@ -151,7 +151,8 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
     print_end(notes, &report.run, samples, text);
 }
 
-const LEGEND: [&str; 3] = [
+const LEGEND: [&str; 4] = [
+    "signs compare the structures at one size",
     "L1 to L3: smallest cache that can hold the structure, – if none can",
     "power: exponent p if the total time is proportional to F^p for F faces, ± standard error",
     "in cache, beyond: power for the sizes that fit into the last cache, and for the larger ones",

@@ -67,7 +67,7 @@ fn print(report: &NeighboursReport, text: &mut TextOutput) {
 
 /// Returns the table with a row per task and a column per index, and its legend.
 fn table(report: &NeighboursReport, bold: bool) -> String {
-    let mut signs = Signs::new("fastest", bold);
+    let mut signs = Signs::new(bold);
     let mut header = vec![Cell::new("ns"), Cell::new("per")];
     header.extend(report.backends.iter().map(|index| right(&index.name)));
     let mut table = styled(header, bold);

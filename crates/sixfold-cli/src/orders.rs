@@ -95,7 +95,7 @@ pub(crate) fn default_operations() -> String {
 fn print(report: &OrdersReport, text: &mut TextOutput) {
     text.print_line("");
     text.print_answer(&report.sentences, &report.warnings);
-    let mut signs = Signs::new("best order of the structure", text.bold());
+    let mut signs = Signs::new(text.bold());
     for comparison in &report.comparisons {
         let rows: Vec<&ResultRow> = report.rows(&comparison.operation).collect();
         if !rows.is_empty() {
@@ -103,6 +103,7 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
             text.print_line("");
         }
     }
+    signs.explain("signs compare the orders of one structure");
     signs.explain("worst: ratio of the worst order to the best, – without a clear difference");
     text.print_line(&signs.legend());
     text.print_line("");

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
@@ -22,7 +21,7 @@ use crate::progress::Bar;
 use crate::signs::Signs;
 use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
 use crate::workloads::workload;
-use sixfold_results::numbers::{counted, duration, figure, grouped, rounded_down};
+use sixfold_results::numbers::{approximate, counted, duration, figure, grouped, rounded_down};
 
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
@@ -288,11 +287,11 @@ fn ranking(report: &PickReport) -> String {
     let pays_at_once = pays_after
         .iter()
         .all(|after| ["1", "–", "never"].contains(&after.as_str()));
-    let mut signs = Signs::new("clearly fastest", false);
+    let mut signs = Signs::new(false);
     let has_winner = report
         .ranking
         .iter()
-        .all(|ranked| ranked.estimated || ranked.samples >= FEWEST_OF_A_WINNER);
+        .all(|ranked| ranked.estimated || ranked.has_enough_samples());
     let ties = report.ranking.iter().filter(|r| r.tied_with_best).count();
     let mut times = Vec::new();
     let mut ratios = Vec::new();
@@ -383,7 +382,7 @@ fn pays_after(report: &PickReport, ranked: &Ranked) -> String {
         Some(BreakEven {
             operations: Some(operations),
             ..
-        }) if *operations < 1e15 => grouped(operations.ceil() as usize),
+        }) if *operations < 1e15 => approximate(operations.max(1.0)),
         Some(_) => "never".into(),
     }
 }

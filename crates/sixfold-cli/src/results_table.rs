@@ -30,15 +30,9 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
     // Intervals fit into the table only if there are few columns.
     let intervals = columns.len() <= 4;
-    let mut signs = Signs::new("clearly fastest; of bytes: fewest", bold);
-    let bytes = || columns.iter().filter_map(|backend| backend.bytes);
-    let least = bytes().min().filter(|_| columns.len() > 1);
-    let smallest = Smallest {
-        bytes: least,
-        is_tied: bytes().filter(|&bytes| Some(bytes) == least).count() > 1,
-    };
+    let mut signs = Signs::new(bold);
     let table = stacked(&columns, |part| {
-        table_of_backends(report, part, intervals, smallest, &mut signs)
+        table_of_backends(report, part, intervals, &mut signs)
     });
     let units = UNITS.iter().filter(|(unit, _)| {
         let mut rows = report.results.iter();
@@ -69,21 +63,11 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     format!("{table}\n{}", signs.legend())
 }
 
-/// The fewest bytes of a backend.
-#[derive(Clone, Copy)]
-struct Smallest {
-    /// `None` if there is only one backend.
-    bytes: Option<usize>,
-    /// Whether several backends have these bytes.
-    is_tied: bool,
-}
-
 /// Returns the table of some of the backends.
 fn table_of_backends(
     report: &Report,
     columns: &[&BackendReport],
     intervals: bool,
-    smallest: Smallest,
     signs: &mut Signs,
 ) -> String {
     let mut header = vec![Cell::new("ns"), Cell::new("per")];
@@ -148,7 +132,7 @@ fn table_of_backends(
         let warning = noise_warning(report, &operation.name).filter(|_| is_first);
         warnings.extend(warning.map(|warning| (row, warning)));
     }
-    add_bytes(&mut table, columns, smallest, intervals, signs);
+    add_bytes(&mut table, columns, intervals);
     for column in table.column_iter_mut().skip(1) {
         column.set_padding((1, 0));
     }
@@ -214,27 +198,14 @@ fn noise_warning(report: &Report, operation: &str) -> Option<String> {
 }
 
 /// Adds the actual bytes per vertex, and the theoretical ones if they differ.
-fn add_bytes(
-    table: &mut Table,
-    columns: &[&BackendReport],
-    smallest: Smallest,
-    intervals: bool,
-    signs: &mut Signs,
-) {
+fn add_bytes(table: &mut Table, columns: &[&BackendReport], intervals: bool) {
     let figure = |bytes: Option<f64>| {
         let figure = bytes.map_or("–".into(), |bytes| format!("{bytes:.1}"));
         with_interval(figure, "", intervals)
     };
     let mut held = vec![Cell::new("bytes held"), Cell::new("v")];
-    held.extend(columns.iter().map(|backend| {
-        let is_least = smallest.bytes.is_some() && backend.bytes == smallest.bytes;
-        let sign = match (is_least, smallest.is_tied) {
-            (false, _) => String::new(),
-            (true, false) => signs.record('*').into(),
-            (true, true) => signs.record('=').into(),
-        };
-        signs.cell(sign + &figure(backend.bytes_per_vertex))
-    }));
+    let bytes = columns.iter().map(|backend| backend.bytes_per_vertex);
+    held.extend(bytes.map(|bytes| right(figure(bytes))));
     table.add_row(held);
     let differs = |backend: &&BackendReport| {
         let theory = backend.layout_bytes_per_vertex;

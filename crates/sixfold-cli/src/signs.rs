@@ -8,8 +8,6 @@ use crate::text::{hanging_indent, width};
 
 /// The signs that occur in a table. The legend explains only these signs.
 pub(crate) struct Signs {
-    /// What `*` means, such as "fastest".
-    best: &'static str,
     used: Vec<char>,
     /// Other parts of the legend.
     parts: Vec<String>,
@@ -17,11 +15,9 @@ pub(crate) struct Signs {
 }
 
 impl Signs {
-    /// Creates an empty legend. `best` says what a backend with the sign `*` is. If `bold` is set,
-    /// its figures are bold.
-    pub(crate) fn new(best: &'static str, bold: bool) -> Self {
+    /// Creates an empty legend. If `bold` is set, the figures of the fastest backend are bold.
+    pub(crate) fn new(bold: bool) -> Self {
         Self {
-            best,
             used: Vec::new(),
             parts: Vec::new(),
             bold,
@@ -95,7 +91,7 @@ impl Signs {
     /// Returns the lines of the legend. A line ends only between two signs.
     pub(crate) fn legend(&self) -> String {
         let meanings = [
-            ('*', self.best),
+            ('*', "clearly fastest"),
             ('=', "equal: within 5 % of the fastest"),
             ('?', "undecided: perhaps the fastest"),
             ('~', "measured on a sample of the elements"),
@@ -158,7 +154,7 @@ mod tests {
 
     #[test]
     fn each_figure_has_its_signs_and_the_legend_explains_only_these() {
-        let mut signs = Signs::new("fastest", true);
+        let mut signs = Signs::new(true);
         assert_eq!(signs.figure(&row(Some(Standing::Slower))), "12,300");
         assert_eq!(signs.legend(), "");
         let best = signs.figure(&row(Some(Standing::Best)));
@@ -185,7 +181,7 @@ mod tests {
         signs.explain("more");
         signs.explain("more");
         let legend = signs.legend().replace('\n', "; ");
-        let expected = "* fastest; ? undecided: perhaps the fastest; ~ measured on a sample of the elements; \
+        let expected = "* clearly fastest; ? undecided: perhaps the fastest; ~ measured on a sample of the elements; \
                         ≥ lower bound: not run, so not ranked; m the backend merges \
                         vertices at one position; more";
         assert_eq!(legend, expected);

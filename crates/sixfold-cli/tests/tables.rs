@@ -16,7 +16,7 @@ fn a_cube_is_shown_in_a_half_edge_mesh() {
         "24 half-edges",
         "6 faces",
         "twin*",
-        "* not stored",
+        "† not stored",
     ] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
     }

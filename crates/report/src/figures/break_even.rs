@@ -1,8 +1,9 @@
 //! A figure that shows after how many operations a structure has saved more time than building it
 //! took.
 
-use sixfold_results::numbers::{counted, duration, grouped};
-use sixfold_results::{PickReport, Report, ResultRow};
+use sixfold_results::launches::difference_over_launches;
+use sixfold_results::numbers::{approximate, counted, duration};
+use sixfold_results::{BreakEven, PickReport, Report, ResultRow};
 
 use super::INPUT_BACKEND;
 use crate::Picture;
@@ -36,33 +37,32 @@ impl<'s> Repeated<'s> {
         let rows = study.rows(operation);
         let times = rows.filter_map(|row| Some((row, build(study, row)?, run(row)?)));
         let times: Vec<(&ResultRow, f64, f64)> = times.collect();
-        let given = times.iter().find(|(row, ..)| row.backend == INPUT_BACKEND);
-        let given = given.map(|(.., run)| *run);
         let line = |&(row, build, run): &(&'s ResultRow, f64, f64)| {
-            let name = row.backend.as_str();
-            let saved = given
-                .map(|given| given - run)
-                .filter(|_| name != INPUT_BACKEND);
-            let pays_at = saved
-                .filter(|saved| *saved > 0.0)
-                .map(|saved| build / saved);
+            // A run may be a part of the time of the row.
+            let part = run / row.median_ns.unwrap_or(run);
+            let ends = row.ci_low_ns.zip(row.ci_high_ns);
             Line {
-                name,
+                name: row.backend.as_str(),
                 build,
                 run,
-                pays_after: match (given, pays_at) {
-                    _ if name == INPUT_BACKEND => "given".into(),
-                    (_, Some(count)) => {
-                        let [one, many] = units(operation);
-                        break_even_text(count, one, many)
-                    }
-                    (Some(_), None) => "never".into(),
-                    (None, None) => "–".into(),
-                },
-                pays_at,
+                interval: ends.map(|(low, high)| [part * low, part * high]),
+                launches: row.launch_ns.iter().map(|ns| Some(part * (*ns)?)).collect(),
+                pays: Pays::Unknown,
             }
         };
-        let lines: Vec<Line<'s>> = times.iter().map(line).collect();
+        let mut lines: Vec<Line<'s>> = times.iter().map(line).collect();
+        let given = lines.iter().position(|line| line.name == INPUT_BACKEND);
+        if let Some(given) = given {
+            let pays = lines.iter().map(|line| match lines[given].crossing(line) {
+                _ if line.name == INPUT_BACKEND => Pays::Given,
+                Some(crossing) => Pays::After(crossing),
+                None => Pays::Never,
+            });
+            let pays: Vec<Pays> = pays.collect();
+            for (line, pays) in lines.iter_mut().zip(pays) {
+                line.pays = pays;
+            }
+        }
         let max_count = match operation {
             // A pass over the whole mesh.
             ALL_QUERIES => {
@@ -70,7 +70,7 @@ impl<'s> Repeated<'s> {
                 elements.map_or(1e6, |elements| elements as f64).max(10.0)
             }
             _ => {
-                let counts = lines.iter().filter_map(|line| line.pays_at);
+                let counts = lines.iter().filter_map(Line::pays_at);
                 let last = counts.filter(|count| *count < 1e9).fold(10.0, f64::max);
                 10_f64.powf((10.0 * last).log10().ceil())
             }
@@ -141,21 +141,21 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
 /// Returns the structures with the shortest total time of a study for fewer visited elements than a pass over
 /// the mesh, with the largest number of visits for each, and the structure for more. `None` if the study has no
 /// queries of all relations.
-pub(crate) fn sequence(study: &Report) -> Option<(String, Vec<(String, usize)>)> {
+pub(crate) fn sequence(study: &Report) -> Option<(String, Vec<(String, String)>)> {
     let repeated = Repeated::new(study).filter(|one| one.operation == ALL_QUERIES)?;
     let (last, steps) = envelope(&repeated.lines, repeated.max_count)?;
     let steps = steps
         .into_iter()
-        .map(|(line, most)| (line.name.to_owned(), most.ceil() as usize));
+        .map(|(line, most)| (line.name.to_owned(), most.text("visited elements")));
     Some((last.name.to_owned(), steps.collect()))
 }
 
-/// Returns the lines with the shortest total time, with the number of repetitions up to which each is the
-/// shortest, and the line that is the shortest beyond.
-fn envelope<'l, 's>(
-    lines: &'l [Line<'s>],
-    max_count: f64,
-) -> Option<(&'l Line<'s>, Vec<(&'l Line<'s>, f64)>)> {
+/// The lines with the shortest total time: the shortest for the most repetitions, and before it, the lines that
+/// are the shortest up to a crossing with the next.
+type Envelope<'l, 's> = (&'l Line<'s>, Vec<(&'l Line<'s>, Crossing)>);
+
+/// Returns the lines with the shortest total time; `None` without lines.
+fn envelope<'l, 's>(lines: &'l [Line<'s>], max_count: f64) -> Option<Envelope<'l, 's>> {
     let least = |count: f64| {
         let order = |a: &&Line<'_>, b: &&Line<'_>| {
             let by_total = a.at(count).total_cmp(&b.at(count));
@@ -168,31 +168,29 @@ fn envelope<'l, 's>(
     let mut steps = Vec::new();
     loop {
         // The first crossing with a line that is less steep.
-        let crossing = |other: &Line<'_>| (other.build - line.build) / (line.run - other.run);
-        let later = lines.iter().filter(|other| other.run < line.run);
-        let next = later
-            .map(crossing)
-            .filter(|&at| at > count)
-            .reduce(f64::min);
-        let Some(next) = next.filter(|&next| next < max_count) else {
+        let crossings = lines.iter().filter_map(|other| line.crossing(other));
+        let next = crossings
+            .filter(|crossing| crossing.at > count)
+            .min_by(|a, b| a.at.total_cmp(&b.at));
+        let Some(next) = next.filter(|next| next.at < max_count) else {
             return Some((line, steps));
         };
-        steps.push((line, next));
         // Beyond the crossing, so that rounding does not choose the same line again.
-        count = next * (1.0 + 1e-9);
+        count = next.at * (1.0 + 1e-9);
+        steps.push((line, next));
         line = least(count)?;
     }
 }
 
 /// Draws the time to build once and run the mix of a workload, over the number of operations.
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
-    let pays_after = |name: &str| {
+    let pays = |name: &str| {
         let row = report.break_even.iter().find(|row| row.backend == name);
-        match row.map(|row| row.operations) {
-            _ if name == INPUT_BACKEND => "given".into(),
-            None => "–".into(),
-            Some(None) => "never".into(),
-            Some(Some(operations)) => break_even_text(operations, "operation", "operations"),
+        match row.map(Crossing::of) {
+            _ if name == INPUT_BACKEND => Pays::Given,
+            None => Pays::Unknown,
+            Some(None) => Pays::Never,
+            Some(Some(crossing)) => Pays::After(crossing),
         }
     };
     let measured = report.ranking.iter().filter(|ranked| !ranked.estimated);
@@ -203,13 +201,12 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
             _ => ranked.first_build_ns(),
         },
         run: ranked.ns_per_operation,
-        pays_after: pays_after(&ranked.backend),
-        pays_at: {
-            let mut rows = report.break_even.iter();
-            let row = rows.find(|row| row.backend == ranked.backend);
-            row.and_then(|row| row.operations)
-                .filter(|_| ranked.backend != INPUT_BACKEND)
-        },
+        interval: ranked
+            .ns_ci_low
+            .zip(ranked.ns_ci_high)
+            .map(|(low, high)| [low, high]),
+        launches: ranked.launch_ns.clone(),
+        pays: pays(&ranked.backend),
     });
     let lines: Vec<Line<'_>> = lines.collect();
     let name = &report.workload.name;
@@ -240,11 +237,62 @@ struct Line<'a> {
     name: &'a str,
     build: f64,
     run: f64,
-    pays_after: String,
-    /// The number of repetitions from which the line is below that of the input mesh; `None` if it
-    /// never is, and for the input mesh.
-    pays_at: Option<f64>,
+    /// The interval of `run`.
+    interval: Option<[f64; 2]>,
+    /// The time of a run in each launch.
+    launches: Vec<Option<f64>>,
+    pays: Pays,
 }
+
+/// From which number of repetitions a line is below that of the input mesh.
+enum Pays {
+    /// It is the line of the input mesh.
+    Given,
+    After(Crossing),
+    Never,
+    /// The input mesh has no line.
+    Unknown,
+}
+
+/// The number of repetitions from which one line is below another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Crossing {
+    at: f64,
+    /// The 95 % interval. The upper end is infinite if the lines may never cross.
+    range: Option<[f64; 2]>,
+}
+
+impl Crossing {
+    /// Returns the break-even of a workload; `None` if building never pays.
+    fn of(row: &BreakEven) -> Option<Self> {
+        Some(Self {
+            at: row.operations?,
+            range: row
+                .ci_low
+                .map(|low| [low, row.ci_high.unwrap_or(f64::INFINITY)]),
+        })
+    }
+
+    /// Formats the number: `1,200 runs (1,100 to 1,400)`, or `1,200 runs (from 980, or never)`.
+    fn text(&self, units: &str) -> String {
+        let range = match self.range {
+            None => String::new(),
+            Some([low, high]) if high < MOST_RUNS => {
+                format!(" ({} to {})", approximate(low), approximate(high))
+            }
+            Some([low, _]) => format!(" (from {}, or never)", approximate(low)),
+        };
+        let number = approximate(self.at);
+        let units = match number == "1" {
+            true => units.trim_end_matches('s'),
+            false => units,
+        };
+        format!("{number} {units}{range}")
+    }
+}
+
+/// From this number of repetitions on, building never pays.
+const MOST_RUNS: f64 = 1e15;
 
 impl Line<'_> {
     /// Returns the total time for `count` repetitions.
@@ -252,22 +300,58 @@ impl Line<'_> {
         self.build + count * self.run
     }
 
+    /// Returns where a line that is less steep crosses this one. The time saved by a repetition is formed within launches.
+    fn crossing(&self, other: &Self) -> Option<Crossing> {
+        let saved = self.run - other.run;
+        let after = |saved: f64| match saved > 0.0 {
+            true => ((other.build - self.build) / saved).max(1.0),
+            false => f64::INFINITY,
+        };
+        let in_launches = || {
+            let launches = [&*self.launches, &*other.launches];
+            difference_over_launches([self.run, other.run], launches)?.interval
+        };
+        let of_both = || {
+            let half = |line: &Self| line.interval.map(|[low, high]| (high - low) / 2.0);
+            let half = half(self)?.hypot(half(other)?);
+            Some([saved - half, saved + half])
+        };
+        let interval = in_launches().or_else(of_both);
+        (saved > 0.0 && after(saved) < MOST_RUNS).then(|| Crossing {
+            at: after(saved),
+            range: interval.map(|[least, most]| [after(most), after(least)]),
+        })
+    }
+
+    fn pays_at(&self) -> Option<f64> {
+        match self.pays {
+            Pays::After(crossing) => Some(crossing.at),
+            _ => None,
+        }
+    }
+
+    fn pays_range(&self) -> Option<[f64; 2]> {
+        match self.pays {
+            Pays::After(crossing) => crossing.range,
+            _ => None,
+        }
+    }
+
+    /// Says after how many `units` building pays off.
+    fn pays_after(&self, units: &str) -> String {
+        match self.pays {
+            Pays::Given => "given".into(),
+            Pays::After(crossing) => crossing.text(units),
+            Pays::Never => "never".into(),
+            Pays::Unknown => "–".into(),
+        }
+    }
+
     /// Returns the number of repetitions from which building pays off, if it is between the ends of the axis.
     fn point(&self, [first, last]: [f64; 2]) -> Option<f64> {
-        self.pays_at.filter(|&count| first < count && count <= last)
+        self.pays_at()
+            .filter(|&count| first < count && count <= last)
     }
-}
-
-/// Returns a number of repetitions as text: `1 run` or `1,200 runs`.
-pub(crate) fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
-    match count.ceil().max(1.0) {
-        count if count < 1e15 => counted(count as usize, singular, plural),
-        _ => "never".into(),
-    }
-}
-
-fn count_text(count: f64) -> String {
-    grouped(count.ceil().max(1.0) as usize)
 }
 
 struct Curves<'a> {
@@ -299,7 +383,7 @@ impl Curves<'_> {
                 line.name.into(),
                 duration(line.build),
                 duration(line.run),
-                line.pays_after.clone(),
+                line.pays_after(self.units),
             ]);
         }
         let rows = lines.iter().map(|line| BreakEvenRow {
@@ -310,8 +394,13 @@ impl Curves<'_> {
             run_ns: line.run,
             pays_after_runs: match line.name {
                 INPUT_BACKEND => Some(0.0),
-                _ => line.pays_at,
+                _ => line.pays_at(),
             },
+            pays_after_low: line.pays_range().map(|[low, _]| low),
+            pays_after_high: line
+                .pays_range()
+                .map(|[_, high]| high)
+                .filter(|high| high.is_finite()),
         });
         let csv = own_columns(rows);
         let ends = lines
@@ -336,7 +425,7 @@ impl Curves<'_> {
         };
         let mut canvas = Canvas::new(860.0, 424.0);
         axes.draw(&mut canvas);
-        draw_lines(&mut canvas, &axes, lines);
+        draw_lines(&mut canvas, &axes, lines, self.units);
         Some(Figure {
             caption: self.caption(lines),
             id: self.id,
@@ -360,7 +449,7 @@ impl Curves<'_> {
         if lines.iter().any(is_drawn) {
             parts.push(format!(
                 "Points and numbers show after how many {} building pays off: the line of the structure is then below that of \
-                 the {INPUT_BACKEND}.",
+                 the {INPUT_BACKEND}. Ranges in brackets follow from the 95 % intervals of the repeated work.",
                 self.units
             ));
         }
@@ -373,7 +462,8 @@ impl Curves<'_> {
     fn least_total(&self, lines: &[Line<'_>]) -> Option<String> {
         let (last, steps) = envelope(lines, self.max_count)?;
         let parts = steps.iter();
-        let parts = parts.map(|(line, most)| format!("{} up to {}", line.name, count_text(*most)));
+        let parts =
+            parts.map(|(line, most)| format!("{} up to {}", line.name, most.text(self.units)));
         let parts: Vec<String> = parts.collect();
         Some(match parts.is_empty() {
             true => format!("{} has the shortest total time everywhere.", last.name),
@@ -387,7 +477,7 @@ impl Curves<'_> {
 }
 
 /// Draws the lines with their names at the right, and the points from which building pays off.
-fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>]) {
+fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], units: &str) {
     let [min_count, max_count] = axes.x.values;
     let steps = (8.0 * (max_count / min_count).log10()).ceil() as i32;
     for line in lines {
@@ -404,7 +494,7 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>]) {
     let points: Vec<(&Line<'_>, f64, [f64; 2])> = points.collect();
     let mut labelled: Vec<[f64; 2]> = Vec::new();
     for (line, count, [x, y]) in points {
-        let title = format!("{} pays after {}", line.name, line.pays_after);
+        let title = format!("{} pays after {}", line.name, line.pays_after(units));
         let colour = column_colour(line.name);
         canvas.mark(title, |canvas| canvas.circle([x, y], 4.5, colour));
         // Where points are close to each other, the labels at the right say the numbers.
@@ -413,7 +503,7 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>]) {
         };
         if !labelled.iter().any(is_near) {
             let style = Style::new(12).end().bold(true);
-            canvas.text([x - 7.0, y - 7.0], &count_text(count), style);
+            canvas.text([x - 7.0, y - 7.0], &approximate(count), style);
             labelled.push([x, y]);
         }
     }
@@ -426,11 +516,13 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>]) {
         let right = axes.x.pixels[1];
         let colour = column_colour(line.name);
         canvas.line([right + 2.0, place], [right + 14.0, label], colour, 1.0);
-        let text = match line.pays_after.as_str() {
-            "given" => format!("{}: given", line.name),
-            "never" => format!("{}: never pays", line.name),
-            "–" => line.name.to_owned(),
-            count => format!("{}: pays after {count}", line.name),
+        let text = match line.pays {
+            Pays::Given => format!("{}: given", line.name),
+            Pays::Never => format!("{}: never pays", line.name),
+            Pays::Unknown => line.name.to_owned(),
+            Pays::After(Crossing { at, .. }) => {
+                format!("{}: pays after {} {units}", line.name, approximate(at))
+            }
         };
         canvas.text([right + 18.0, label + 4.0], &text, Style::new(12));
     }

@@ -6,7 +6,7 @@ use sixfold_results::{CacheLimit, Fit, GrowthReport, OperationInfo, ResultRow, S
 
 use super::{marked, per_unit};
 use crate::Picture;
-use crate::axes::{Axes, Curve, LogScale};
+use crate::axes::{Axes, Curve, CurvePoint, LogScale};
 use crate::canvas::{Canvas, Style};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour};
 use crate::data::rows as data;
@@ -77,7 +77,7 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
             "The meshes are made by Sixfold (the shape {}), not read from a file. Both axes are logarithmic and the same in all panels, so a straight line is a power of the \
              number of faces. The number at each name is the exponent: at 1, the time per element \
              is constant; at 2, each element takes a scan of all faces.{limit} Lower bounds (≥ in the table) are \
-             not drawn. The table has the times per element, and the slopes for all sizes, for the sizes that fit \
+             not drawn. An open point, or ~: measured on a sample of the elements. The table has the times per element, and the slopes for all sizes, for the sizes that fit \
              into the last cache, and for the larger sizes.",
             report.shape
         ),
@@ -88,10 +88,20 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
     })
 }
 
-/// Returns the measured times of one backend, in nanoseconds, over the numbers of faces.
-fn points(sizes: &[SizeReport], fit: &Fit) -> Vec<[f64; 2]> {
-    let point = |size: &SizeReport| Some([size.faces as f64, find_row(size, fit)?.median_ns?]);
+/// Returns the measured times of one backend, in nanoseconds, over the numbers of faces, and whether each was
+/// measured on a sample of the elements.
+fn measured(sizes: &[SizeReport], fit: &Fit) -> Vec<([f64; 2], bool)> {
+    let point = |size: &SizeReport| {
+        let row = find_row(size, fit)?;
+        Some(([size.faces as f64, row.median_ns?], row.sampled))
+    };
     sizes.iter().filter_map(point).collect()
+}
+
+/// Returns the points of [`measured`].
+fn points(sizes: &[SizeReport], fit: &Fit) -> Vec<[f64; 2]> {
+    let measured = measured(sizes, fit).into_iter();
+    measured.map(|(point, _)| point).collect()
 }
 
 /// Returns the limit of a structure in the last cache.
@@ -109,11 +119,16 @@ fn panel(
     canvas.text([0.0, 14.0], &operation.name, Style::new(14).bold(true));
     axes.draw(&mut canvas);
     let curves = fits.iter().map(|fit| {
-        let points = points(&report.sizes, fit).into_iter().map(|point| {
-            let [faces, ns] = point;
-            let faces = grouped(faces as usize);
-            let title = format!("{}, {faces} faces: {}", fit.backend, duration(ns));
-            (point, title)
+        let measured = measured(&report.sizes, fit).into_iter();
+        let points = measured.map(|([faces, ns], is_sampled)| CurvePoint {
+            at: [faces, ns],
+            title: format!(
+                "{}, {} faces: {}",
+                fit.backend,
+                grouped(faces as usize),
+                from_sample(duration(ns), is_sampled)
+            ),
+            is_sampled,
         });
         Curve {
             name: match fit.all {
@@ -169,8 +184,12 @@ fn add_times_and_slopes(
     let what = format!("{}, {}", &operation.name, per_unit(&operation.unit));
     for size in sizes {
         let cell = |fit: &&Fit| {
-            let each = find_row(size, fit).and_then(each_ns);
-            each.map_or_else(|| "–".into(), |(ns, bound)| marked(duration(ns), bound))
+            let row = find_row(size, fit);
+            let each = row.and_then(|row| Some((row, each_ns(row)?)));
+            each.map_or_else(
+                || "–".into(),
+                |(row, (ns, bound))| marked(from_sample(duration(ns), row.sampled), bound),
+            )
         };
         let mut line = vec![what.clone(), grouped(size.faces)];
         line.extend(fits.iter().map(cell));
@@ -200,6 +219,14 @@ fn slope_cell(slope: Option<Slope>) -> String {
         }) => format!("{exponent:.2} ± {error:.2}"),
         Some(slope) => format!("{:.2}", slope.exponent),
         None => "–".into(),
+    }
+}
+
+/// Marks a time that was measured on a sample of the elements.
+fn from_sample(time: String, is_sampled: bool) -> String {
+    match is_sampled {
+        true => format!("~{time}"),
+        false => time,
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn table(why: &Why) -> TitledTable {
         title: "Reads of each query".into(),
         caption: "Means per queried element: results, table rows read, bytes read, cache lines \
                   touched, cache lines fetched by a small simulated cache, jumps to distant cache \
-                  lines, and bytes that must move from memory. ~: only a sample of the elements \
+                  lines, and bytes of the lines that the whole pass touches. ~: only a sample of the elements \
                   was queried."
             .into(),
         table,

@@ -1,8 +1,8 @@
-//! A figure that plots the time of each query against the bytes that the query moves from memory.
-//! Lines show the speed of memory. If the mark of a query is on a line, the query can become faster
-//! only by moving fewer bytes.
+//! A figure that plots the time of each query against the bytes of the cache lines that the query touches.
+//! Lines show how fast a simple loop reads as many bytes in order. A query near a line hardly becomes faster
+//! unless it touches fewer lines.
 
-use sixfold_results::numbers::{bytes, duration, figure as shown};
+use sixfold_results::numbers::{bytes, duration, figure as shown, grouped};
 use sixfold_results::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
@@ -53,7 +53,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
             values: ends(&|(_, timed)| timed.ns_per_element),
             pixels: UPWARDS,
         },
-        x_label: "bytes that must move per element",
+        x_label: "bytes of touched lines per element",
         y_label: "time per element",
         x_format: &byte_tick,
         y_format: &duration_tick,
@@ -66,7 +66,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     });
     let panels: Vec<Canvas> = panels.collect();
     let title = format!(
-        "Time and bytes that must move: {}",
+        "Time and bytes of touched lines: {}",
         file_name(&why.mesh.name)
     );
     let speeds = buffers.iter().map(|buffer| {
@@ -76,13 +76,25 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
             bytes(buffer.bytes)
         )
     });
+    let faster = rows.iter();
+    let faster = faster.filter(|(_, timed)| timed.ns_per_element < timed.floor_ns);
+    let faster = match faster.count() {
+        0 => String::new(),
+        count => format!(
+            " {} faster: these are measured speeds, not limits.",
+            match count {
+                1 => format!("1 of {} queries is", grouped(rows.len())),
+                count => format!("{} of {} queries are", grouped(count), grouped(rows.len())),
+            }
+        ),
+    };
     Some(Figure {
         id: id.into(),
         picture: Picture::grid(&title, 2, panels),
         title,
         caption: format!(
             "Each point is one relation on one structure; all panels have the same axes. The dashed lines show the time in which \
-             this machine reads these bytes in order: {}. The shape of a point shows what limits the query. Square: bandwidth (near a \
+             a simple loop on this machine reads as many bytes in order: {}.{faster} The shape of a point shows what limits the query. Square: bandwidth (near a \
              line). Ring: waiting for reads that cannot be predicted. Dot: work on data that is near.",
             speeds.collect::<Vec<_>>().join(", and ")
         ),

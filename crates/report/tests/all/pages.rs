@@ -691,10 +691,33 @@ fn a_provisional_answer_says_which_budget_gives_enough_samples() {
         "{}",
         said(&study)
     );
-    // Twice the samples need twice the time, and a fifth more.
+    // Twice the samples need twice the time, and half as much again.
     study.run.settings.rounds = None;
     study.run.settings.budget_s = Some(10.0);
-    assert!(said(&study).contains("--budget 24s gives enough"));
+    let first = said(&study);
+    assert!(
+        first.contains("3 times the --budget gives enough"),
+        "{first}"
+    );
+    // One of two launches has a time.
+    study.run.settings.launches = std::num::NonZeroU32::new(3);
+    for row in &mut study.results {
+        row.launch_ns = vec![None, row.median_ns, None];
+    }
+    let first = said(&study);
+    assert!(
+        first.contains("3 times the --budget gives enough"),
+        "{first}"
+    );
+    // Other reasons than too few samples: nothing is promised.
+    for row in &mut study.results {
+        row.launch_ns = vec![row.median_ns; 3];
+    }
+    let first = said(&study);
+    assert!(
+        first.starts_with("Fastest (provisional, too few samples):"),
+        "{first}"
+    );
 }
 
 /// The answer names what a smaller structure costs, and the operation in which another one is much faster.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::figure::{Figure, Status, samples_of};
 use crate::finding::LabFinding;
 use crate::numbers::{rounded_down, shown_ratio, times};
+use crate::ranking::has_enough;
 use crate::read::ReadError;
 use crate::rows::{MeshReport, ResultRow, Samples, check_samples};
 use crate::run::Run;
@@ -270,6 +271,11 @@ pub struct PartCost {
 }
 
 impl Ranked {
+    /// Returns whether the time is from enough launches or samples to be ranked.
+    pub fn has_enough_samples(&self) -> bool {
+        has_enough(self.samples, &self.launch_ns)
+    }
+
     /// Returns the quotient of the shown times of this backend and of `other`, for tables and
     /// sentences that show the times.
     pub fn shown_ratio(&self, other: &Self) -> f64 {

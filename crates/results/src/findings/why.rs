@@ -196,7 +196,7 @@ pub struct Reads {
     /// If only a sample of the elements is queried, the number does not include lines that only
     /// queries of other elements would touch.
     pub sweep_lines: u64,
-    /// Estimate of the bytes per element that must be moved from memory. If all elements are
+    /// The bytes per element of the cache lines that the whole pass touches. If all elements are
     /// queried, each touched cache line counts once for the whole mesh. If only a sample is
     /// queried, each cache line counts once for each query that touches the line.
     pub moved_bytes: f64,

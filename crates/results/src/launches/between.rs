@@ -4,12 +4,15 @@
 //! for a minute, so the times of two studies cannot tell whether the machine or the whole program became slower
 //! ([`LASTING_SPEED`]). But what slows the machine down slows all rows down. So a row is compared with the other
 //! rows: its change is relative to the median change of all, and its error comes from the launches after their
-//! common speed was taken out. If the median change is large, rows may differ by half as much ([`UNEVEN`]): a busy
-//! neighbour slows queries of large tables down more than computation.
+//! common speed was taken out. Few launches say little about the error of one row, so the variance of a row is
+//! averaged with that of a typical row ([`TYPICAL_FREEDOM`]; the moderated t of Smyth 2004). A busy neighbour slows
+//! queries of large tables down more than computation. So if the machine became slower, the changes of the rows
+//! differ by more than their errors; as much as they do, and at most by half of the median change ([`UNEVEN`]), no
+//! single row is found.
 
 use std::array::from_fn;
 
-use super::{LASTING_IN_RATIOS, LASTING_IN_TIMES, MeanError, squared_error, trimmed, trimmed_mean};
+use super::{LASTING_IN_RATIOS, LASTING_IN_TIMES, MeanError, trimmed, trimmed_mean, variance};
 use crate::statistics::{median, student_at};
 
 /// Minimum number of rows from which the common speed of a launch is estimated.
@@ -29,8 +32,15 @@ pub struct LaunchPair<'r> {
 /// The largest change between any two of twenty studies of a minute on a virtual machine with busy neighbours was 1.29.
 pub const LASTING_SPEED: f64 = 1.3;
 
-/// The part of a common change by which the change of a single row may differ from it.
+/// The largest part of a common change by which the change of a single row may differ from it.
 const UNEVEN: f64 = 0.5;
+
+/// The degrees of freedom that the variance of a typical row has in that of each row. With more, rows that vary more
+/// than others are found too often.
+const TYPICAL_FREEDOM: f64 = 3.0;
+
+/// The median of the absolute values of a normal distribution times this is its standard deviation.
+const NORMAL: f64 = 1.4826;
 
 /// The changes of all rows between two studies.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,8 +61,10 @@ pub struct StudyChange {
     log: f64,
     /// The error of `log`.
     error: MeanError,
-    /// The logarithm of the factor that could be due to the machine.
+    /// The logarithm of the largest factor that could be due to the machine.
     unsure: f64,
+    /// The variance from row to row of what is due to the machine.
+    uneven: f64,
 }
 
 impl StudyChange {
@@ -65,8 +77,12 @@ impl StudyChange {
 
     /// Returns the smallest ratio that is not due to chance or to the machine.
     pub fn detectable(&self, level: f64) -> f64 {
-        let chance = student_at(1.0 - level, self.error.freedom) * self.error.squared.sqrt();
-        (chance + self.unsure).exp()
+        let quantile = student_at(1.0 - level, self.error.freedom);
+        let chance = |squared: f64| quantile * squared.sqrt();
+        let with_rows = chance(self.error.squared + self.uneven);
+        with_rows
+            .min(chance(self.error.squared) + self.unsure)
+            .exp()
     }
 }
 
@@ -76,40 +92,93 @@ impl StudyChange {
 /// O(rows · launches · log launches).
 pub fn study_changes(rows: &[LaunchPair<'_>], other_machine: bool) -> StudyChanges {
     let speeds: [Vec<f64>; 2] = from_fn(|study| speeds(rows, study));
-    let relative = rows.iter().map(|row| Change::new(row, Some(&speeds)));
+    let means: [Vec<Option<LogMean>>; 2] = from_fn(|study| {
+        let relative = rows
+            .iter()
+            .map(|row| LogMean::new(row, study, Some(&speeds[study])));
+        moderated(relative.collect())
+    });
+    let pairs = means[0].iter().zip(&means[1]);
+    let relative = pairs
+        .map(|(before, after)| Some(Change::between((*before)?, (*after)?, LASTING_IN_RATIOS)));
     let relative: Vec<Option<Change>> = relative.collect();
-    let known: Vec<f64> = relative.iter().flatten().map(|change| change.log).collect();
-    let common = match known.len() >= FEWEST_ROWS {
-        true => median(known),
+    let known = || relative.iter().flatten();
+    let common = match known().count() >= FEWEST_ROWS {
+        true => median(known().map(|change| change.log).collect()),
         false => None,
     };
-    let changes = rows.iter().zip(relative).map(|(row, relative)| {
-        let whole = Change::new(row, None)?;
+    // A machine that became slower does not slow all rows down alike.
+    let uneven = common.filter(|_| !other_machine).map_or(0.0, |common| {
+        let apart = median(known().map(|change| (change.log - common).abs()).collect());
+        let error = median(known().map(|change| change.error.squared).collect());
+        let [apart, error] = [apart, error].map(Option::unwrap_or_default);
+        ((NORMAL * apart).powi(2) - error).max(0.0)
+    });
+    let changes = rows.iter().zip(&relative).map(|(row, relative)| {
+        let [before, after] = [0, 1].map(|study| LogMean::new(row, study, None));
+        let whole = Change::between(before?, after?, LASTING_IN_TIMES);
         let log = (row.ns[1] / row.ns[0]).ln();
         let half_width = student_at(0.975, whole.error.freedom) * whole.error.squared.sqrt();
-        let (log_of_change, error, unsure) = match (common, relative) {
+        let (log_of_change, error, unsure, uneven) = match (common, relative) {
             (Some(common), Some(relative)) => {
-                // A machine that became slower does not slow all rows down alike.
-                let unsure = if other_machine {
-                    0.0
-                } else {
-                    UNEVEN * common.abs()
-                };
-                (relative.log - common, relative.error, unsure)
+                let unsure = UNEVEN * common.abs();
+                (relative.log - common, relative.error, unsure, uneven)
             }
-            _ => (whole.log, whole.error, LASTING_SPEED.ln()),
+            _ => (whole.log, whole.error, LASTING_SPEED.ln(), f64::INFINITY),
         };
         (half_width.is_finite() && log.is_finite()).then(|| StudyChange {
             interval: [log - half_width, log + half_width].map(f64::exp),
             log: log_of_change,
             error,
             unsure,
+            uneven,
         })
     });
     StudyChanges {
         rows: changes.collect(),
         common: common.map(f64::exp),
     }
+}
+
+/// The logarithm of the time of a row in one study.
+#[derive(Clone, Copy, Debug)]
+struct LogMean {
+    mean: f64,
+    /// The variance from launch to launch.
+    variance: MeanError,
+    /// The number of launches.
+    count: usize,
+}
+
+impl LogMean {
+    /// Returns the mean over the launches, relative to their speeds if they are given; `None` with fewer than two
+    /// launches.
+    fn new(row: &LaunchPair<'_>, study: usize, speeds: Option<&[f64]>) -> Option<Self> {
+        let launches = row.launches[study].iter().enumerate();
+        let logs = launches.filter_map(|(launch, ns)| {
+            let speed = speeds.map_or(0.0, |speeds| speeds[launch]);
+            Some((*ns)?.ln() - speed)
+        });
+        let logs: Vec<f64> = logs.collect();
+        let cut = speeds.map_or(0, |_| trimmed(logs.len()));
+        Some(Self {
+            variance: variance(&logs, cut)?,
+            count: logs.len(),
+            mean: trimmed_mean(logs, cut)?,
+        })
+    }
+}
+
+/// Averages the variance of each row with that of a typical row, the median of all.
+fn moderated(mut rows: Vec<Option<LogMean>>) -> Vec<Option<LogMean>> {
+    let variances = rows.iter().flatten().map(|row| row.variance.squared);
+    let typical = median(variances.collect()).unwrap_or_default();
+    for MeanError { squared, freedom } in rows.iter_mut().flatten().map(|row| &mut row.variance) {
+        let sum = *freedom * *squared + TYPICAL_FREEDOM * typical;
+        *freedom += TYPICAL_FREEDOM;
+        *squared = sum / *freedom;
+    }
+    rows
 }
 
 /// The change of a row on the scale of logarithms, with the errors of both studies.
@@ -120,28 +189,13 @@ struct Change {
 }
 
 impl Change {
-    /// Returns the change of a row, relative to the speeds of the launches if they are given; `None` with fewer than
-    /// two launches.
-    fn new(row: &LaunchPair<'_>, speeds: Option<&[Vec<f64>; 2]>) -> Option<Self> {
-        let [before, after] = [0, 1].map(|study| {
-            let launches = row.launches[study].iter().enumerate();
-            let logs = launches.filter_map(|(launch, ns)| {
-                let speed = speeds.map_or(0.0, |speeds| speeds[study][launch]);
-                Some((*ns)?.ln() - speed)
-            });
-            let logs: Vec<f64> = logs.collect();
-            let (cut, lasting) = match speeds {
-                Some(_) => (trimmed(logs.len()), LASTING_IN_RATIOS),
-                None => (0, LASTING_IN_TIMES),
-            };
-            let error = squared_error(&logs, cut, lasting)?;
-            Some((trimmed_mean(logs, cut)?, error))
-        });
-        let ((before, error), (after, own)) = (before?, after?);
-        Some(Self {
-            log: after - before,
+    /// Returns the change of a row. `lasting` is as in [`squared_error`](super::squared_error).
+    fn between(before: LogMean, after: LogMean, lasting: f64) -> Self {
+        let [error, own] = [before, after].map(|row| row.variance.of_mean(row.count, lasting));
+        Self {
+            log: after.mean - before.mean,
             error: sum(error, own),
-        })
+        }
     }
 }
 

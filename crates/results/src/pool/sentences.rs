@@ -115,9 +115,14 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let best = leaders(rows);
     let first = best.first()?;
     let (next, ratio) = next_best(rows)?;
-    let lead = match best.len() {
-        1 => "is fastest on average",
-        _ => "are fastest on average, within 5 % of each other",
+    let is_equal = |row: &Overall| row.ratio_to_best <= first.ratio_to_best * EQUAL_UP_TO;
+    let names = list(best.iter().map(|row| row.backend.clone()));
+    let lead = match best {
+        [_] => format!("{names} is fastest on average"),
+        best if best.iter().all(is_equal) => {
+            format!("{names} are fastest on average, within 5 % of the first")
+        }
+        _ => format!("it is undecided which is fastest on average of {names}"),
     };
     let name = |row: &Overall| row.backend.clone();
     let only = match rows.len() < compared {
@@ -126,9 +131,8 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     };
     let open = not_ranked(rows).map_or(String::new(), |open| format!("; {open}"));
     Some(format!(
-        "{}, {group}: {} {lead} (geometric mean over {}); {next} {ratio} the time{open}.{only}",
+        "{}, {group}: {lead} (geometric mean over {}); {next} {ratio} the time{open}.{only}",
         first.purpose.title(),
-        list(best.iter().map(name)),
         counted(first.meshes, "mesh", "meshes"),
     ))
 }

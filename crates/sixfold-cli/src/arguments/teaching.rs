@@ -16,7 +16,7 @@ const TABLES_EXAMPLES: &str = "Examples:
   sixfold tables cube.obj --backend corner-table --markdown -    for slides
 
 A row of a table is named by a letter and a number: v vertex, e edge, h half-edge, f face, c corner,
-p place in a list. The fields have the names of textbooks. A field with a * is not stored: it follows
+p place in a list. The fields have the names of textbooks. A field with a † is not stored: it follows
 from the number of the row, or from other fields.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 3 the structure cannot hold the mesh.";

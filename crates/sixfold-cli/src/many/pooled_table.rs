@@ -2,7 +2,7 @@
 
 use comfy_table::{Attribute, Cell, CellAlignment};
 use sixfold_results::numbers::{counted, figure, rounded_down};
-use sixfold_results::{Overall, Pool, Pooled, Purpose};
+use sixfold_results::{Pool, Pooled, Purpose, leaders};
 
 use crate::tables::{stacked, unbroken};
 use crate::text::hanging_indent;
@@ -46,7 +46,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
     }
     let columns: Vec<&str> = pool.compared.iter().map(String::as_str).collect();
     let table = |columns: &[&str]| {
-        let mut table = unbroken(header("× the best on average,\nby group", columns), bold);
+        let mut table = unbroken(header("× the fastest mean,\nby group", columns), bold);
         for (i, group) in pool.groups.iter().enumerate() {
             let meshes = counted(group.meshes.len(), "mesh", "meshes");
             // The name of the first group is too long for the first column.
@@ -59,24 +59,31 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
             title.extend(columns.iter().map(|_| Cell::new("")));
             table.add_row(title);
             for purpose in Purpose::ALL {
-                let rows = group.overall.iter().filter(|row| row.purpose == purpose);
-                let rows: Vec<&Overall> = rows.collect();
-                // The backends of a purpose are sorted from the fastest to the slowest.
-                let Some(best) = rows.first() else { continue };
+                // Sorted from the fastest to the slowest.
+                let rows = purpose.rows(&group.overall);
+                let best = leaders(rows);
+                if rows.is_empty() {
+                    continue;
+                }
                 let mut line = vec![Cell::new(format!("  {}", purpose.title().to_lowercase()))];
                 line.extend(columns.iter().map(|column| {
                     let row = rows.iter().find(|row| row.backend == **column);
                     let Some(row) = row else {
                         return right("–".into());
                     };
-                    let is_best = row.backend == best.backend && !row.bound;
-                    let mark = if is_best { "*" } else { "" };
+                    let is_leader = best.iter().any(|best| best.backend == row.backend);
+                    let mark = match (is_leader, best) {
+                        (false, _) => "",
+                        (true, [_]) => "*",
+                        (true, _) => "=",
+                    };
+                    let ratio = row.ratio_to_best / rows[0].ratio_to_best;
                     let ratio = match row.bound {
-                        true => format!("≥{}", figure(rounded_down(row.ratio_to_best))),
-                        false => figure(row.ratio_to_best),
+                        true => format!("≥{}", figure(rounded_down(ratio))),
+                        false => figure(ratio),
                     };
                     let cell = right(format!("{mark}{ratio}"));
-                    match bold && is_best {
+                    match bold && mark == "*" {
                         true => cell.add_attribute(Attribute::Bold),
                         false => cell,
                     }
@@ -90,7 +97,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
     Some(format!("{}\n{legend}", stacked(&columns, table)))
 }
 
-const GROUPS_LEGEND: &str = "* smallest measured mean of the group; ≥ lower bound, not ranked. In the mean over all pooled meshes, each power of ten of \
+const GROUPS_LEGEND: &str = "* clearly fastest; = one of several between which there is no clear difference; ≥ lower bound, not ranked. In the mean over all pooled meshes, each power of ten of \
     the number of faces has equal weight.";
 
 fn right(text: String) -> Cell {
@@ -104,7 +111,7 @@ fn header(title: &str, columns: &[&str]) -> Vec<Cell> {
 }
 
 const LEGEND: [&str; 4] = [
-    "* fastest, or shares the first place, on most meshes",
+    "* clearly fastest on most meshes",
     "≥ lower bound, not ranked: on some meshes, a run would exceed the budget",
     "(n) mean over n meshes only: on the other meshes, a backend has no time",
     "– no time on these meshes",
@@ -116,7 +123,7 @@ fn cell(row: &Pooled, bold: bool) -> Cell {
         0 => figure(row.ratio_to_best),
         _ => format!("≥{}", figure(rounded_down(row.ratio_to_best))),
     };
-    let ahead = 2 * (row.best + row.tied) > row.meshes;
+    let ahead = 2 * row.best > row.meshes;
     let mark = if ahead { "*" } else { "" };
     let cell = Cell::new(format!("{mark}{ratio}")).set_alignment(CellAlignment::Right);
     match bold && ahead {

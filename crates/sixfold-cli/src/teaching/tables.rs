@@ -106,7 +106,7 @@ fn print(name: &str, shown: &[Shown], refused: &[Refused], text: &mut TextOutput
         [one] => legend(one),
         _ => hanging_indent(
             "",
-            "* not stored: follows from the number of the row, or from other fields; `sixfold tables \
+            "† not stored: follows from the number of the row, or from other fields; `sixfold tables \
              --backend NAME` says what each field means",
         ),
     });
@@ -128,7 +128,7 @@ fn block(mesh: &str, shown: &Shown) -> String {
     parts.join("\n\n")
 }
 
-/// Returns the table of records. Columns that are not stored have a `*`.
+/// Returns the table of records. Columns that are not stored have a `†`.
 fn table(records: &Records) -> String {
     let names = Column::words("", records.rows.iter().map(|row| row.name.clone()));
     let column = |(i, column): (usize, &RecordColumn)| {
@@ -140,7 +140,7 @@ fn table(records: &Records) -> String {
 }
 
 fn heading(column: &RecordColumn) -> String {
-    let mark = if column.derived { "*" } else { "" };
+    let mark = if column.derived { "†" } else { "" };
     format!("{}{mark}", column.name)
 }
 
@@ -168,7 +168,7 @@ fn legend(shown: &Shown) -> String {
         lines.push(hanging_indent(&first, column.about));
     }
     if columns.iter().any(|(_, column)| column.derived) {
-        lines.push("* not stored: follows from the number of the row, or from other fields".into());
+        lines.push("† not stored: follows from the number of the row, or from other fields".into());
     }
     lines.join("\n")
 }
@@ -211,11 +211,7 @@ fn markdown_text(shown: &[Shown]) -> String {
         text += &format!("## {}\n\n", one.backend);
         for records in &one.records {
             let heads: Vec<String> = records.columns.iter().map(heading).collect();
-            text += &format!(
-                "| {} | {} |\n",
-                records.element,
-                heads.join(" | ").replace('*', "\\*")
-            );
+            text += &format!("| {} | {} |\n", records.element, heads.join(" | "));
             text += &format!("|---|{}\n", "---|".repeat(heads.len()));
             for row in &records.rows {
                 let fields: Vec<String> = (0..heads.len()).map(|i| field(row, i)).collect();

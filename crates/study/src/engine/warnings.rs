@@ -1,5 +1,6 @@
 //! Warnings about possible faults of the measurement, each with a remedy.
 
+use sixfold_results::launches::FEWEST_LAUNCHES;
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::statistics::{DISTURBED, median};
 use sixfold_results::{
@@ -172,14 +173,15 @@ fn few(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let in_rounds = |row: &&&ResultRow| row.median_ns.is_some() && !row.warm_up_only;
     let measured = results.iter().filter(in_rounds);
     let all = measured.clone().count();
-    let few = measured
-        .filter(|row| row.samples < FEWEST_OF_A_WINNER)
-        .count();
+    let few = measured.filter(|row| !row.has_enough_samples()).count();
     let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
     (few > 0 && !once).then(|| {
         format!(
-            "{few} of {all} times are from fewer than {FEWEST_OF_A_WINNER} samples, so they cannot be \
-             compared with the fastest. Use {}{}.",
+            "{few} of {all} times are from fewer than {}, so they cannot be compared with the fastest. Use {}{}.",
+            match settings.launches {
+                None => format!("{FEWEST_OF_A_WINNER} samples"),
+                Some(_) => format!("{FEWEST_LAUNCHES} launches"),
+            },
             settings.more_samples(),
             match settings.rounds {
                 None => " or fewer --operations",
@@ -198,11 +200,14 @@ fn wide(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let known: Vec<(f64, &ResultRow)> = results
         .iter()
         .copied()
-        .filter(|row| row.samples >= FEWEST_OF_A_WINNER)
+        .filter(|row| row.has_enough_samples())
         .filter_map(|row| Some((half_width(row)?, row)))
         .collect();
     let wide = known.iter().filter(|(half_width, _)| *half_width > WIDE);
     let (count, all) = (wide.clone().count(), known.len());
+    if 2 * count <= all {
+        return None;
+    }
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
         "{count} of {all} intervals extend more than {:.0} % from their time. The widest \

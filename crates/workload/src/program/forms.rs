@@ -30,6 +30,11 @@ pub(crate) trait Form {
     fn run(program: &Self::Program, mesh: &mut Self::Mesh, scratch: &mut Self::Scratch) -> Outcome;
 }
 
+/// Says that a program refuses the mesh.
+pub(super) fn refuses(reason: &str) -> String {
+    format!("the program refuses the mesh: {reason}")
+}
+
 /// Defines a kind of program as a type that implements [`Form`].
 macro_rules! form {
     ($name:ident: $program:ident on $($bound:path),+; changes mesh: $changes:expr) => {
@@ -50,7 +55,7 @@ macro_rules! form {
                 mesh: &M,
                 _: &PolygonMesh,
             ) -> Result<P::Scratch<M>, String> {
-                program.set_up(mesh)
+                program.set_up(mesh).map_err(|reason| refuses(&reason))
             }
 
             fn run(program: &P, mesh: &mut M, scratch: &mut P::Scratch<M>) -> Outcome {

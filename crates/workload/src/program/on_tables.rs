@@ -7,7 +7,7 @@ use std::sync::Arc;
 use sixfold::{FaceVertexMesh, PolygonMesh, QueryCost, Relation, Representation};
 
 use super::Program;
-use super::forms::Queries;
+use super::forms::{Queries, refuses};
 use super::recorded::Recorded;
 use super::subject::{ONLY_WHOLE, ProgramRefusal, message, record, run_program};
 use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
@@ -43,7 +43,8 @@ impl<'p, P: Program> OnTables<'p, P> {
         let mesh = MadeFrom::from_polygons(polygons)?;
         let tables = Tables::new(&mesh, &relations)
             .map_err(|reason| ProgramRefusal::Refused(reason.to_string()))?;
-        let set_up = || program.set_up(&tables).map_err(ProgramRefusal::Refused);
+        let refused = |reason: String| ProgramRefusal::Refused(refuses(&reason));
+        let set_up = || program.set_up(&tables).map_err(refused);
         let scratch = catch_unwind(AssertUnwindSafe(set_up))
             .map_err(|panic| ProgramRefusal::Panicked(message(panic.as_ref())))??;
         Ok(Self {

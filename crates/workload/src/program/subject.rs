@@ -22,8 +22,8 @@ pub enum ProgramRefusal {
     /// The structure cannot hold the mesh.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// The program refuses the mesh.
-    #[error("the program refuses the mesh: {0}")]
+    /// The program refuses the mesh, or it is left out because a run would take too long.
+    #[error("{0}")]
     Refused(String),
     /// The program panicked.
     #[error("the program panicked: {0}")]

@@ -76,7 +76,7 @@ impl Trace {
         let scans = self.calls.iter().filter(is_scan).count() as u64;
         if scans.saturating_mul(faces as u64) > MAX_SCANNED {
             return Err(format!(
-                "{scans} calls of the trace scan all {faces} faces: a run would take too long"
+                "left out, because {scans} calls of the trace scan all {faces} faces each, which would take too long"
             ));
         }
         Ok(())
@@ -404,7 +404,10 @@ fn translate_edits<M: Representation + MeshEdit>(
         M::EDITS[edit as usize] == Some(QueryCost::Scan) && edit != Edit::Compact
     });
     if scans.count() as u64 * polygons.face_count() as u64 > MAX_SCANNED {
-        return Err("the edits of the trace scan all faces: a run would take too long".into());
+        return Err(
+            "left out, because the edits of the trace scan all faces each, which would take too long"
+                .into(),
+        );
     }
     let mut mesh = mesh.clone();
     let mut names = ElementNames::new::<M>(polygons);

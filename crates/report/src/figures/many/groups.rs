@@ -74,9 +74,19 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
         }
     }
     if differences.is_empty() {
-        return Some(
-            "By size and kind: the same structures are the fastest for all sizes and kinds of meshes.".into(),
-        );
+        let answers = |means: &Means| -> Vec<String> {
+            let purposes = Purpose::ALL.into_iter();
+            let leaders = purposes.map(|purpose| leaders(purpose.rows(&means.overall)));
+            leaders.map(names).collect()
+        };
+        let is_same = parts.iter().all(|part| answers(part) == answers(all));
+        return Some(match is_same {
+            true => "By size and kind: the same structures are the fastest for all sizes and kinds of meshes.".into(),
+            false => {
+                "By size and kind: no size or kind of meshes has an entirely different answer; the table has the                  structures that share the first place."
+                    .into()
+            }
+        });
     }
     let more = differences.split_off(differences.len().min(NAMED)).len();
     differences.extend((more > 0).then(|| format!("{} more in the table", grouped(more))));

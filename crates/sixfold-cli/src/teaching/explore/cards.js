@@ -67,7 +67,7 @@ export class Card {
 
   table({ element, columns, total, rows }) {
     const head = columns.map((column) =>
-      el("th", { title: column.about, scope: "col" }, column.name + (column.derived ? "*" : "")));
+      el("th", { title: column.about, scope: "col" }, column.name + (column.derived ? "†" : "")));
     const body = [];
     let before = -1;
     for (const row of rows) {

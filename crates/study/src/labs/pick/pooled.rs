@@ -78,7 +78,7 @@ pub(crate) fn pooled(
         choice: choose(&ranking),
         preliminary: ranking
             .iter()
-            .any(|ranked| !ranked.estimated && ranked.samples < MIN_SAMPLES),
+            .any(|ranked| !ranked.estimated && is_preliminary(ranked)),
         ranking,
         excluded,
         break_even,
@@ -198,6 +198,14 @@ fn parts_on_all(rows: &[&Ranked]) -> Vec<PartCost> {
         }
     });
     parts.collect()
+}
+
+/// Returns whether a time has too few samples for a narrow interval, or too few launches for any.
+fn is_preliminary(ranked: &Ranked) -> bool {
+    match ranked.launch_ns.is_empty() {
+        true => ranked.samples < MIN_SAMPLES,
+        false => !ranked.has_enough_samples(),
+    }
 }
 
 /// Returns the break-even of `ranked` over all meshes. The number of operations is `None` if

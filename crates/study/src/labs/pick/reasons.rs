@@ -76,11 +76,14 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
     let measured = report.ranking.iter().filter(|ranked| !ranked.estimated);
     let fewest = measured.map(|ranked| ranked.samples).min();
     if let Some(fewest) = fewest.filter(|_| report.preliminary) {
-        warnings.push(format!(
-            "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use \
-             {more}.",
-            counted(fewest, "sample", "samples")
-        ));
+        warnings.push(match report.run.settings.launches {
+            None => format!(
+                "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use \
+                 {more}.",
+                counted(fewest, "sample", "samples")
+            ),
+            Some(_) => format!("Some times are from only one launch: use {more}."),
+        });
     }
     for backend in &report.mismatches {
         warnings.push(match report.program {
