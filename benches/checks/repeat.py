@@ -27,6 +27,8 @@ import tempfile
 
 # A planted slowdown.
 SLOWDOWN = 1.1
+# A sample is disturbed if the machine was slower than usual by this factor, as in the warnings of a study.
+DISTURBED = 1.3
 # The exit codes of `compare --fail-if-slower`.
 SAME, SLOWER, CANNOT_TELL = 0, 1, 3
 
@@ -149,9 +151,9 @@ def report(sixfold, output, options, documents):
     studies = [rows_of(document) for document in documents]
     run = documents[0]["runs"][0]
     machine, count = run["environment"], len(studies)
-    every = [row for study in studies for row in study.values()]
-    disturbed = sum(row["disturbed"] for row in every)
-    taken = disturbed + sum(row["samples"] for row in every)
+    times = sum(map(len, studies)) // count
+    slowdowns = [each for document in documents for samples in document["findings"][0]["samples"] for each in samples["slowdowns"]]
+    disturbed = sum(each > DISTURBED for each in slowdowns)
     noises = [document["findings"][0]["control"]["typical"] for document in documents if document["findings"][0]["control"]]
     named, usual = winners(studies)
     lines = [
@@ -160,7 +162,7 @@ def report(sixfold, output, options, documents):
         f"{machine['cpu_model']}, {machine['cores']} cores, Linux {machine['kernel'] or platform.release()}; {machine['rustc']}; "
         f"sixfold {machine['commit'] or machine['sixfold']}.", "",
         f"{count} studies of the built-in mesh, {run['settings']['budget_s']:.0f} s each, ran one after the other. A study has {run['settings']['launches'] or 1} "
-        f"launches and {len(every) // count} times. {percent(disturbed, taken)} of the samples were disturbed by other programs.", "",
+        f"launches and {times} times. In {percent(disturbed, len(slowdowns))} of the samples, the machine was more than {DISTURBED} times slower than at best.", "",
         "## Intervals", "", "| 95 % intervals of | contain the median of the other studies | number of intervals |", "|---|---|---|",
     ]
     kinds = [

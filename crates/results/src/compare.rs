@@ -3,10 +3,10 @@
 //! Two measurements at different times have no rounds and no launches in common. The ratio of two times is the
 //! quotient of the shown times, and its interval comes from the values of the launches of both. Whether a time
 //! became longer is decided relative to the other times (see [`study_changes`]): the speed of a whole machine
-//! changes from study to study. A comparison of many times must not call one slower by chance: all times of a
-//! comparison together do so with a probability of at most [`FALSE_ALARM`], if the program did not change. A time
-//! that was measured in one launch only cannot be compared, because nothing shows how much it varies from process
-//! to process; it is slower only if it is twice as long.
+//! changes from study to study. A comparison of many times must not call one slower by chance: if the program did not
+//! change, all times of a comparison together do so with a probability of at most [`FALSE_ALARM`] (the same holds for
+//! faster). A time that was measured in one launch only cannot be compared, because nothing shows how much it varies
+//! from process to process; it is slower only if it is twice as long.
 
 mod matching;
 mod sentences;
@@ -27,7 +27,7 @@ use crate::run::Run;
 use crate::statistics::{median, quotient};
 use matching::{AllMeasured, CommonMeshes, MeasuredFigure, measurements};
 
-/// The probability with which a comparison calls any of its times slower or faster though the program did not change.
+/// The probability with which a comparison calls any of its times slower though the program did not change; likewise faster.
 pub const FALSE_ALARM: f64 = 1.0 / 200.0;
 
 /// Options of a comparison.
@@ -276,7 +276,7 @@ pub fn compare(
         compared.extend(changes(pairs, relative));
     }
     let overall = median(compared.iter().map(|(row, _)| row.ratio).collect());
-    let level = FALSE_ALARM / (2 * compared.len().max(1)) as f64;
+    let level = FALSE_ALARM / compared.len().max(1) as f64;
     let divisor = overall.filter(|_| relative).unwrap_or(1.0);
     let rows = compared.into_iter().map(|(row, change)| Change {
         detectable: change.map(|change| change.detectable(level)),

@@ -6,11 +6,10 @@
 //! each backend, the [corrected median](crate::corrected_times) of its samples, and the interval comes from
 //! the values of the launches. The ratio of two backends is formed within each launch.
 //!
-//! Two levels of variation are seen: from round to round within a launch, and from launch to launch. A third is
-//! not: what is the same in all launches of a study and different in the next, such as the neighbours of the
-//! hour. It is about as strong as the variation from launch to launch is: a machine that is noisy from second to
-//! second is also noisy from hour to hour. So the squared error of a mean of n launches is s² (1/n + c), where s is
-//! the standard deviation from launch to launch. The constant c is [`LASTING_IN_TIMES`] or [`LASTING_IN_RATIOS`].
+//! Two levels of variation are seen: from round to round within a launch, and from launch to launch. Launches that
+//! follow each other are alike, so the variance of a mean of n launches is more than s²/n, where s is the standard
+//! deviation from launch to launch: it is [`ALIKE`] s²/n. A machine also has slow and fast hours, which no study
+//! sees. They change times, but hardly ratios, so the squared error of a time has [`LASTING_IN_TIMES`] s² in addition.
 //!
 //! A launch may be disturbed as a whole. So ratios are [trimmed](TRIMMED) means over the launches, and their
 //! intervals are those of trimmed means (Tukey and McLaughlin 1963).
@@ -31,13 +30,16 @@ pub const FEWEST_LAUNCHES: usize = 2;
 /// The part of the launches at each end that a trimmed mean leaves out. With fewer than five launches, it leaves
 /// out none.
 pub const TRIMMED: f64 = 0.2;
-/// The variance of a time from study to study that no study sees, divided by the variance from launch to launch.
+/// The variance of a mean of n launches, divided by s²/n for the standard deviation s from launch to launch.
 ///
-/// Chosen from twenty studies of a minute on a virtual machine with busy neighbours, so that about 94 % of the
-/// intervals contain the median of the other studies. `benches/checks/repeat.py` measures it.
+/// Found in fifty studies of a minute on virtual machines with busy neighbours, of 15 and 60 launches: 1.3 to 1.7.
+/// `benches/checks/repeat.py` measures how many intervals contain what other studies find.
+pub const ALIKE: f64 = 1.5;
+/// The variance of a time from study to study that no study sees, divided by the variance from launch to launch. What
+/// slows the whole machine down changes no ratio.
+///
+/// Chosen from the same studies, so that about 94 % of the intervals contain the median of the other studies.
 pub const LASTING_IN_TIMES: f64 = 1.0 / 8.0;
-/// The same of a ratio of two times. What slows the whole machine down changes no ratio.
-pub const LASTING_IN_RATIOS: f64 = 1.0 / 20.0;
 /// Maximum number of passes of the fit.
 const MAX_PASSES: usize = 100;
 /// Effects that change by less than this, relative to the time, do not change the result.
@@ -120,7 +122,7 @@ pub fn ratio_over_launches(
         .collect();
     let least = logs.iter().copied().min_by(f64::total_cmp)?.exp();
     let ratio = ns / other_ns;
-    let half_width = half_width(&logs, trimmed(logs.len()), LASTING_IN_RATIOS);
+    let half_width = half_width(&logs, trimmed(logs.len()), 0.0);
     ratio
         .is_finite()
         .then(|| around(ratio, least.min(ratio), half_width))
@@ -136,7 +138,7 @@ pub fn difference_over_launches(
     let differences: Vec<f64> = pairs.filter_map(|(a, b)| Some((*a)? - (*b)?)).collect();
     let least = differences.iter().copied().min_by(f64::total_cmp)?;
     let value = ns - other_ns;
-    let half_width = half_width(&differences, trimmed(differences.len()), LASTING_IN_RATIOS);
+    let half_width = half_width(&differences, trimmed(differences.len()), 0.0);
     Some(Median {
         value,
         least: least.min(value),
@@ -165,7 +167,7 @@ impl MeanError {
     /// Returns the error of a mean of `count` values with this variance, see [`squared_error`].
     pub(crate) fn of_mean(self, count: usize, lasting: f64) -> Self {
         Self {
-            squared: self.squared * (1.0 / count as f64 + lasting),
+            squared: self.squared * (ALIKE / count as f64 + lasting),
             ..self
         }
     }

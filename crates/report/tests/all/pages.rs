@@ -646,11 +646,13 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
             _ => row.operation = "all_queries".into(),
         }
         row.elements = Some(1_000_000);
+        (row.ci_low_ns, row.ci_high_ns) = (None, None);
     }
     // 100 n = 900 + 10 n at 10 visits, and 900 + 10 n = 1400 + 5 n at 100 visits.
     let page = ReportPage::new(&study.clone().into(), "sixfold study");
     let caption = &figure_by_id(&page, "break-even").caption;
-    let expected = "indexed-face-set up to 10, face-vertex up to 100, half-edge beyond";
+    let expected =
+        "indexed-face-set up to 10 visits, face-vertex up to 100 visits, half-edge beyond";
     assert!(caption.contains(expected), "{caption}");
     assert!(caption.contains("Points and numbers show"), "{caption}");
     let few = "indexed-face-set up to 10 visited elements and face-vertex up to 100 visited elements, then half-edge";
@@ -659,6 +661,22 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
         "{:?}",
         page.answer
     );
+    // The range follows from the intervals: the saved time is 5 ± √(1² + half²).
+    for (half, range) in [(1.0, "(78 to 140)"), (5.0, "(from 50, or never)")] {
+        for row in &mut study.results {
+            let half = if row.backend == "half-edge" {
+                half
+            } else {
+                1.0
+            };
+            row.ci_low_ns = row.median_ns.map(|ns| ns - half);
+            row.ci_high_ns = row.median_ns.map(|ns| ns + half);
+        }
+        let page = ReportPage::new(&study.clone().into(), "sixfold study");
+        let figure = figure_by_id(&page, "break-even");
+        let expected = format!("face-vertex up to 100 visits {range}, half-edge beyond");
+        assert!(figure.caption.contains(&expected), "{}", figure.caption);
+    }
     // A structure that is the fastest from the start has no steps.
     for row in &mut study.results {
         if row.operation == Operation::Build.name() {

@@ -12,7 +12,7 @@
 
 use std::array::from_fn;
 
-use super::{LASTING_IN_RATIOS, LASTING_IN_TIMES, MeanError, trimmed, trimmed_mean, variance};
+use super::{LASTING_IN_TIMES, MeanError, trimmed, trimmed_mean, variance};
 use crate::statistics::{median, student_at};
 
 /// Minimum number of rows from which the common speed of a launch is estimated.
@@ -99,8 +99,7 @@ pub fn study_changes(rows: &[LaunchPair<'_>], other_machine: bool) -> StudyChang
         moderated(relative.collect())
     });
     let pairs = means[0].iter().zip(&means[1]);
-    let relative = pairs
-        .map(|(before, after)| Some(Change::between((*before)?, (*after)?, LASTING_IN_RATIOS)));
+    let relative = pairs.map(|(before, after)| Some(Change::between((*before)?, (*after)?, 0.0)));
     let relative: Vec<Option<Change>> = relative.collect();
     let known = || relative.iter().flatten();
     let common = match known().count() >= FEWEST_ROWS {

@@ -25,7 +25,7 @@ fn a_time_is_the_geometric_mean_over_the_launches() {
     let time = time_over_launches(4.0, &launches).expect("launches");
     let [low, high] = time.interval.expect("three launches");
     // The standard deviation of the logarithms is ln 4, and the quantile of two degrees of freedom is 4.303.
-    let half = 4.302_653 * 4_f64.ln() * (1.0_f64 / 3.0 + LASTING_IN_TIMES).sqrt();
+    let half = 4.302_653 * 4_f64.ln() * (ALIKE / 3.0 + LASTING_IN_TIMES).sqrt();
     assert!((high / (4.0 * half.exp()) - 1.0).abs() < 1e-3, "{high}");
     assert!(close(low * high, 16.0) && time.least == 1.0);
 }
@@ -93,24 +93,27 @@ fn the_error_of_a_trimmed_mean_is_that_of_its_winsorised_values() {
     let values = [5.0, 1.0, 2.0, 3.0, 100.0];
     let error = squared_error(&values, 1, 0.1).expect("three are kept");
     // 2, 2, 3, 5, 5 have the variance 2.3, and three of five values are kept.
-    assert!(close(error.squared, 2.3 / 0.36 * (0.2 + 0.1)), "{error:?}");
+    assert!(
+        close(error.squared, 2.3 / 0.36 * (ALIKE / 5.0 + 0.1)),
+        "{error:?}"
+    );
     assert_eq!(error.freedom, 2.0);
     assert_eq!(squared_error(&values, 2, 0.1), None);
     assert_eq!(squared_error(&[f64::NAN, 1.0, 2.0], 0, 0.1), None);
     assert_eq!([4, 5, 9, 10].map(trimmed), [0, 1, 1, 2]);
 }
 
-/// Standard deviation of the logarithm of a time from study to study. From launch to launch it is
-/// [`LAUNCHING`]'s, and that of the rounds adds to it.
-const LASTING: f64 = 0.007;
+/// Correlation of what differs from launch to launch with that of the launch before.
+const LIKENESS: f64 = 0.2;
 /// Probability and factor of a stall: all of a launch is slow.
 const STALL: (f64, f64) = (0.1, 1.5);
 
 /// One study of two backends: for each launch, the corrected times.
 fn study(launches: usize, stalls: bool, random: &mut ChaCha8Rng) -> [Vec<Option<f64>>; 2] {
     let mut values = [const { Vec::new() }; 2];
-    // What is the same in all launches of a study, and different in the next.
-    let lasting = [(); 2].map(|()| normal(random, LASTING).exp());
+    // Addresses and pages differ from launch to launch, for each backend.
+    let mut own = [(); 2].map(|()| normal(random, LAUNCHING.launches));
+    let innovation = LAUNCHING.launches * (1.0 - LIKENESS * LIKENESS).sqrt();
     for _ in 0..launches {
         let stall = if stalls && uniform(random) < STALL.0 {
             STALL.1
@@ -119,9 +122,9 @@ fn study(launches: usize, stalls: bool, random: &mut ChaCha8Rng) -> [Vec<Option<
         };
         let common = LAUNCHING.common(random);
         let samples = [0, 1].map(|backend| {
-            let true_ns = [TRUE_NS, TRUE_NS * TRUE_RATIO][backend] * lasting[backend];
-            // Addresses and pages differ from launch to launch, for each backend.
-            let own = stall * normal(random, LAUNCHING.launches).exp();
+            let true_ns = [TRUE_NS, TRUE_NS * TRUE_RATIO][backend];
+            own[backend] = LIKENESS * own[backend] + normal(random, innovation);
+            let own = stall * own[backend].exp();
             let times = LAUNCHING.times(&common, true_ns * own, random);
             (0..)
                 .zip(times.into_iter().map(Time::from_wall_ns))
@@ -159,7 +162,7 @@ fn covered(launches: usize, stalls: bool) -> [f64; 2] {
 /// stutters and stalls.
 #[test]
 fn intervals_of_ratios_contain_the_truth_in_95_percent_of_the_studies() {
-    for launches in [2, 3, 5, 10] {
+    for launches in [2, 3, 5, 10, 20] {
         let [ratios, _] = covered(launches, true);
         assert!(
             (93.0..=97.0).contains(&ratios),
@@ -170,7 +173,7 @@ fn intervals_of_ratios_contain_the_truth_in_95_percent_of_the_studies() {
 
 #[test]
 fn intervals_of_times_contain_the_truth_and_have_room_for_the_drift_that_no_launch_sees() {
-    for launches in [2, 3, 5, 10] {
+    for launches in [2, 3, 5, 10, 20] {
         let [_, times] = covered(launches, false);
         assert!(times >= 93.0, "{launches} launches: {times} %");
     }
