@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use sixfold_results::launches::{ALIKE, LASTING_IN_TIMES};
 use sixfold_results::numbers::{bytes, counted, grouped};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{
@@ -420,10 +421,13 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
     let has_interval = |row: &TimeRow<'_>| row.row.ci_low_ns.is_some();
     if several {
         sentences.push(
-            "Intervals of results with several launches are 95 % confidence intervals of the mean of the logarithms over the \
-             launches, by Student's distribution; a ratio is formed within each launch (Kalibera and Jones 2013, 2020). The \
-             intervals of times are widened for a drift from study to study with a standard deviation of 1 %."
-                .into(),
+            format!(
+                "Intervals of results with several launches are 95 % confidence intervals of the mean of the logarithms over the \
+                 launches, by Student's distribution; a ratio is formed within each launch (Kalibera and Jones 2013, 2020), and \
+                 its mean leaves out the largest and the smallest fifth (Tukey and McLaughlin 1963). The variance of a mean is \
+                 {ALIKE} times that of independent launches. The intervals of times also include {LASTING_IN_TIMES} of the \
+                 variance from launch to launch, for what differs from study to study."
+            ),
         );
     }
     if one && is_corrected(rows) && rows.iter().any(has_interval) {
@@ -438,8 +442,8 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
         sentences.push(format!(
             "A backend is equal to the fastest if the whole 95 % interval of its ratio lies within 5 % of 1. It is undecided \
              whether it is slower if the interval contains 1 and is wider, or if the ratio is at most the noise (the \
-             difference between the two measurements of the control, and at least 2 %). A backend with fewer than \
-             {FEWEST_OF_A_WINNER} samples is not ranked."
+             difference between the two measurements of the control, and at least 2 %). A backend with a time in only one of \
+             several launches, or with fewer than {FEWEST_OF_A_WINNER} samples of the only launch, is not ranked."
         ));
     }
     let controls = results.studies().filter_map(|study| study.control.as_ref());
