@@ -172,7 +172,8 @@ measuring = Claims(
         within 5 % of 1
         the interval contains 1 and
         (Tukey and McLaughlin 1963)
-        1/20 for ratios and 1/8 for times
+        is taken as 1.5 times that of independent launches
+        include 1/8 of the variance
         at most
         one of 200 comparisons
         than six times
