@@ -13,7 +13,7 @@ use sixfold_study::{
 use crate::arguments::{Pick, ReadFiles};
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::launches::{self, Launch, Plan};
+use crate::launches::{self, Launch, Launching};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let workload = workload(&arguments.workload)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
-    let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
+    let mut session = Session::open(paths.clone(), &arguments.files, arguments.heap)?;
     let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
     let study_meshes: Vec<StudyMesh> = drawn.collect();
@@ -48,25 +48,18 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         seed: launches::seed(arguments.seed),
         heap: arguments.heap,
     };
-    let count = launches::count(
-        arguments.launching.launches,
-        settings.effort,
-        meshes.iter().filter_map(|mesh| mesh.path.as_deref()),
-        study_meshes
-            .iter()
-            .map(|mesh| mesh.polygons.face_count())
-            .sum(),
-    )?;
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: paths.collect(),
+        part: None,
+        stop: &session.stop,
+    };
+    let faces = study_meshes.iter().map(|mesh| mesh.polygons.face_count());
+    let plan = launching.plan(settings.effort, faces.sum())?;
     warn_of_debug_build();
     if Launch::current().is_none() {
         print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
     }
-    let plan = Plan {
-        count,
-        effort: settings.effort,
-        mesh: None,
-        stop: &session.stop,
-    };
     let bar = Bar::new();
     let reports = study_meshes.iter().map(StudyMesh::report).collect();
     let report = plan.measure(Some(reports), &|done, what| bar.set(done, what), || {
