@@ -17,7 +17,7 @@ use crate::launches::{self, Launch, Launching};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
-use crate::programs::{self, Limits, default_memory_limit};
+use crate::programs::{Limits, Measurement, default_memory_limit};
 use crate::progress::Bar;
 use crate::signs::Signs;
 use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
@@ -84,11 +84,6 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
 
 /// Ranks the structures for the calls of a trace.
 fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
-    if arguments.launching.launches.is_some() {
-        return Err(Failure::usage(
-            "a trace is measured in one launch: leave --launches out",
-        ));
-    }
     let shown = path.display().to_string();
     let cannot_read = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
     let file = std::fs::File::open(path).map_err(cannot_read)?;
@@ -103,18 +98,22 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         runs: 1,
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
-        seed: arguments.seed,
+        seed: launches::seed(arguments.seed),
         heap: arguments.heap,
         isolation: None,
     };
-    programs::measure(
-        &Suite::new().trace(trace),
-        &settings,
-        &arguments.meshes,
-        (arguments.read, arguments.triangulate),
-        &arguments.files,
-        Limits::new(settings.effort, default_memory_limit()),
-    )
+    let measurement = Measurement {
+        suite: &Suite::new().trace(trace),
+        settings: &settings,
+        meshes: &arguments.meshes,
+        read: arguments.read,
+        triangulate: arguments.triangulate,
+        trace: Some(path),
+        launches: arguments.launching.launches,
+        files: &arguments.files,
+        limits: Limits::new(settings.effort, default_memory_limit()),
+    };
+    measurement.run()
 }
 
 /// Reads the meshes. Without a path, a mesh is the built-in mesh. If one of several cannot be read,
