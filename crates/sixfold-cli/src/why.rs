@@ -18,6 +18,8 @@ use crate::why_text::{legend, memory_text, rows_text};
 
 /// The seed of the random order of the measurements.
 const SEED: u64 = 1;
+/// Number of faces of which the structures are built in about the time in which a launch measures the speed of memory.
+const MEMORY_AS_FACES: usize = 400_000;
 
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
@@ -78,7 +80,7 @@ pub(crate) fn measure(
                 given => given,
             };
             let faces = study_mesh.polygons.face_count();
-            let plan = launching.plan(effort, (1 + relations) * faces)?;
+            let plan = launching.plan(effort, (1 + relations) * faces + MEMORY_AS_FACES)?;
             let meshes = Some(vec![study_mesh.report()]);
             plan.measure(meshes, &|done, what| bar.set(done, what), here)
         }

@@ -36,7 +36,11 @@ finished results are kept.";
 /// Shows how many bytes a pass over all elements moves from memory. Shows the measured time of each
 /// relation, and the factor that limits the speed.
 #[derive(Debug, Args)]
-#[command(after_help = WHY_EXAMPLES, verbatim_doc_comment)]
+#[command(
+    after_help = WHY_EXAMPLES,
+    verbatim_doc_comment,
+    mut_arg("launches", |arg| arg.help("Measure in N fresh processes [default: by the budget, 3 for 20s]")),
+)]
 pub(crate) struct Why {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH")]
