@@ -133,7 +133,7 @@ fn unsteady(study: &Report, results: &Results) -> Option<String> {
     let timed = why.flat_map(|why| &why.rows);
     let timed = timed.filter_map(|row| {
         let operation = row.reads.relation.name();
-        Some((operation, &row.backend, row.timed?.ns_per_element))
+        Some((operation, &row.backend, row.timed.as_ref()?.ns_per_element))
     });
     let factors = given.chain(timed).filter_map(|(operation, backend, ns)| {
         let row = study.row(operation, backend)?;

@@ -165,12 +165,16 @@ fn samples(finding: &Finding) -> Vec<Option<&Samples>> {
 
 impl Finding {
     /// Returns whether this finding and `other` measured the same, so that they can be pooled as launches: studies
-    /// of one mesh, its orders or searches in it, the growth of one shape, or picks for one workload on the same
-    /// meshes, by their names.
+    /// of one mesh, its orders, searches in it or times of its queries, the growth of one shape, or picks for one
+    /// workload on the same meshes, by their names.
     pub fn repeats(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Study(a), Self::Study(b)) => a.mesh.name == b.mesh.name,
             (Self::Orders(a), Self::Orders(b)) => a.mesh.name == b.mesh.name,
+            // Counts of reads are the same in each process, so there is nothing to pool.
+            (Self::Why(a), Self::Why(b)) => {
+                a.mesh.name == b.mesh.name && a.memory.is_some() && b.memory.is_some()
+            }
             (Self::Neighbours(a), Self::Neighbours(b)) => {
                 (&a.mesh.name, a.points) == (&b.mesh.name, b.points)
             }

@@ -19,12 +19,7 @@ fn main() -> ExitCode {
         })
         .program(Faulty {
             name: "endless",
-            fault: || {
-                let mut turns = 0_u64;
-                while black_box(true) {
-                    turns = black_box(turns.wrapping_add(1));
-                }
-            },
+            fault: never_end,
         })
         .program(Faulty {
             name: "crashing",
@@ -43,8 +38,40 @@ fn main() -> ExitCode {
         .program(Faulty {
             name: "panicking",
             fault: || panic!("half-edges are not welcome"),
+        })
+        .program(Faulty {
+            name: "chatting",
+            fault: || print!("half-edges!"),
+        })
+        .program(Faulty {
+            name: "endless-once",
+            fault: || {
+                if is_second_launch() {
+                    never_end();
+                }
+            },
+        })
+        .program(Faulty {
+            name: "crashing-once",
+            fault: || {
+                if is_second_launch() {
+                    std::process::abort();
+                }
+            },
         });
     sixfold_cli::main(suite)
+}
+
+fn never_end() {
+    let mut turns = 0_u64;
+    while black_box(true) {
+        turns = black_box(turns.wrapping_add(1));
+    }
+}
+
+/// Returns whether this process is the second launch of a command.
+fn is_second_launch() -> bool {
+    std::env::var("SIXFOLD_LAUNCH").is_ok_and(|launch| launch.contains("\"number\":1,"))
 }
 
 /// Adds up the lengths of all edges, after a fault on the half-edge structure.

@@ -51,7 +51,7 @@ pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use teaching::{Explained, Explore, Lessons, Tables, Trace};
 pub(crate) use why::Why;
 
-use crate::launches::Launch;
+use crate::launches;
 use crate::many::{LabSelection, Shard};
 use crate::text::sanitize;
 
@@ -86,7 +86,7 @@ round of a launch runs every operation once on every backend, in random order. T
 the processor time of the thread. A launch gives the median over its rounds, and the table shows the
 mean over the launches. In each round, one backend is measured twice. The difference between the two
 times of this backend is the noise. A difference between backends that is smaller than the noise is
-not decided.
+not decided. Each lab of a report has launches of its own.
 
 Budget and rounds: With --budget, as many rounds are run as fit into the time. The structures that
 can win come first. What takes too long is sampled, run once after the rounds, estimated or left
@@ -343,7 +343,7 @@ pub(crate) struct EffortArgs {
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LaunchArgs {
     /// Measure in N fresh processes [default: by the budget, 5 for 20s]
-    #[arg(long, value_name = "N", value_parser = launches, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = launch_count, allow_hyphen_values = true)]
     pub(crate) launches: Option<NonZeroU32>,
 }
 
@@ -353,7 +353,7 @@ impl EffortArgs {
         let whole = self
             .rounds
             .map_or(Effort::Budget(self.budget), Effort::Rounds);
-        Launch::current().map_or(whole, |launch| launch.effort(whole))
+        launches::effort(whole)
     }
 }
 
@@ -501,7 +501,7 @@ fn duration(text: &str) -> Result<Duration, String> {
 }
 
 /// Parses a number of launches.
-fn launches(text: &str) -> Result<NonZeroU32, String> {
+fn launch_count(text: &str) -> Result<NonZeroU32, String> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| "write a whole number of launches, at least 1".to_owned())
 }

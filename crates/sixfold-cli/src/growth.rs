@@ -1,18 +1,17 @@
 //! `sixfold growth`: measures how times grow with the size of the mesh.
 
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 
 use comfy_table::Cell;
 use sixfold_results::{Fit, GrowthReport, ResultRow, SizeReport, Slope};
 use sixfold_study::{
-    GrowthError, GrowthSettings, SCALABLE_SHAPES, ScalableShape, Settings, StudyError,
+    GrowthError, GrowthSettings, Progress, SCALABLE_SHAPES, ScalableShape, Settings, StudyError,
 };
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches::{self, Plan};
+use crate::launches::{self, Launching};
 use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::default_operations;
@@ -44,21 +43,13 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     warn_of_debug_build();
     check_memory(&settings)?;
     print_before_measuring(&settings, &mut session.text);
-    // A size that cannot be planned is refused by the measurement.
-    let sizes = sixfold_study::growth_plan(&settings).map_or_else(|_| Vec::new(), |plan| plan.0);
-    let (given, effort) = (arguments.launching.launches, settings.study.effort);
-    let bar = Bar::new();
-    let plan = Plan {
-        count: launches::count(given, effort, [], sizes.iter().sum())?,
-        effort,
-        mesh: None,
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: Vec::new(),
+        part: None,
         stop: &session.stop,
     };
-    let report = plan.measure(None, &|done, what| bar.set(done, what), || {
-        measure(&settings, &session.stop, &bar)
-    });
-    bar.clear();
-    let report = report?;
+    let report = measure(&settings, &launching, &Bar::new())?;
     print(&report, &mut session.text);
     session.finish(with_command(report, false).into())
 }
@@ -94,19 +85,26 @@ fn check_memory(settings: &GrowthSettings) -> Result<(), Failure> {
     )
 }
 
-/// Measures all sizes, if there is enough free memory for the largest size.
+/// Measures all sizes, if there is enough free memory for the largest size: in this process, or in several launches.
 pub(crate) fn measure(
     settings: &GrowthSettings,
-    stop: &AtomicBool,
+    launching: &Launching<'_>,
     bar: &Bar,
 ) -> Result<GrowthReport, Failure> {
+    // A size that cannot be planned is refused by the measurement.
+    let sizes = sixfold_study::growth_plan(settings).map_or_else(|_| Vec::new(), |plan| plan.0);
+    let plan = launching.plan(settings.study.effort, sizes.iter().sum())?;
     check_memory(settings)?;
-    let report = sixfold_study::growth(settings, stop, &mut |at| bar.show(at));
+    let report = plan.measure(None, &|done, what| bar.set(done, what), || {
+        let mut show = |at: Progress<'_>| bar.show(at);
+        let report = sixfold_study::growth(settings, launching.stop, &mut show);
+        report.map_err(|error| match error {
+            GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
+            error => Failure::usage(error),
+        })
+    });
     bar.clear();
-    report.map_err(|error| match error {
-        GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
-        error => Failure::usage(error),
-    })
+    report
 }
 
 /// Returns the help text after the options.

@@ -2,14 +2,14 @@
 //!
 //! The first process reads the mesh, prints what is known before the measurement, starts one launch after the
 //! other, and pools their documents. A launch is a process of the same program with the same arguments. The
-//! environment tells it which launch it is and how much time it has. It prints nothing but its document, and
-//! its progress to standard error as lines.
+//! environment tells it which launch it is, how much time it has and which part of the command it measures. It
+//! prints its document, and its progress to standard error as lines.
 
 use std::env;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::num::NonZeroU32;
 use std::path::Path;
-use std::process::{ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
+use std::process::{ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,6 +23,7 @@ use sixfold_results::{Finding, MeshReport, Results};
 use sixfold_study::{Effort, LAUNCH_VARIABLE, pool_launches};
 
 use crate::failure::Failure;
+use crate::many::Lab;
 use crate::mesh_files::shown;
 use crate::progress::{INTERRUPTED, LINES, PROGRESS, PROGRESS_MARK};
 use crate::text::{print_notice, sanitize};
@@ -57,8 +58,17 @@ pub(crate) struct Launch {
     number: u32,
     /// The time of the whole process in seconds; `None` if the number of rounds is fixed.
     budget_s: Option<f64>,
-    /// The name of the mesh to measure, if the command has several.
-    pub(crate) mesh: Option<String>,
+    /// The part of the command to measure, if it has several.
+    pub(crate) part: Option<Part>,
+}
+
+/// A part of a command that has launches of its own.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub(crate) enum Part {
+    /// The study of the mesh with this name.
+    Mesh(String),
+    /// A lab of the report.
+    Lab(Lab),
 }
 
 impl Launch {
@@ -71,23 +81,6 @@ impl Launch {
         CURRENT.as_ref()
     }
 
-    /// Returns how much this launch measures, if a whole command measures `effort`.
-    pub(crate) fn effort(&self, effort: Effort) -> Effort {
-        match self.budget_s {
-            Some(budget_s) => {
-                let budget = Duration::try_from_secs_f64(budget_s).unwrap_or_default();
-                Effort::Budget(budget.saturating_sub(START.elapsed()))
-            }
-            None => effort,
-        }
-    }
-
-    /// Returns the seed of this launch, if that of the command is `seed`: each launch has its own order of entries
-    /// and its own samples of elements.
-    fn seed(&self, seed: u64) -> u64 {
-        seed.wrapping_add(u64::from(self.number))
-    }
-
     /// Sets `stop` when the first process ends or asks for the end, by closing the standard input of this one.
     pub(crate) fn stop_with_parent(&self, stop: &Arc<AtomicBool>) {
         let stop = Arc::clone(stop);
@@ -98,164 +91,234 @@ impl Launch {
     }
 }
 
-/// Returns the seed of this process, if that of the command is `seed`.
+/// Returns how much this process measures, if the command measures `effort`: a launch has a part of the time.
+pub(crate) fn effort(effort: Effort) -> Effort {
+    match Launch::current().and_then(|launch| launch.budget_s) {
+        Some(budget_s) => {
+            let budget = Duration::try_from_secs_f64(budget_s).unwrap_or_default();
+            Effort::Budget(budget.saturating_sub(START.elapsed()))
+        }
+        None => effort,
+    }
+}
+
+/// Returns the seed of this process, if that of the command is `seed`: each launch has its own order of entries and
+/// its own samples of elements.
 pub(crate) fn seed(seed: u64) -> u64 {
-    Launch::current().map_or(seed, |launch| launch.seed(seed))
+    let number = Launch::current().map_or(0, |launch| launch.number);
+    seed.wrapping_add(u64::from(number))
 }
 
-/// Returns the number of launches of a command that measures `effort` on the meshes `paths` with `faces` faces
-/// together: `wanted`, or else as many as the budget holds.
-///
-/// # Errors
-///
-/// Returns an error if the budget does not hold `wanted` launches, or if a mesh cannot be read again.
-pub(crate) fn count<'p>(
-    wanted: Option<NonZeroU32>,
-    effort: Effort,
-    paths: impl IntoIterator<Item = &'p Path>,
-    faces: usize,
-) -> Result<u32, Failure> {
-    if Launch::current().is_some() {
-        return Ok(1);
-    }
-    if let Some(path) = paths.into_iter().find(|path| !path.is_file()) {
-        return match wanted.map_or(1, NonZeroU32::get) {
-            1 => Ok(1),
-            wanted => Err(Failure::usage(format!(
-                "{}: is not a file, so it cannot be read {wanted} times: save the mesh to a file, or use --launches 1",
-                shown(path)
-            ))),
-        };
-    }
-    let Some(budget) = effort.budget() else {
-        return Ok(wanted.map_or(1, NonZeroU32::get));
-    };
-    let budget_s = budget.as_secs_f64();
-    let set_up_s = SET_UP_S_PER_FACE * faces as f64;
-    let fit = |each_s: f64| (budget_s / each_s) as u32;
-    let usual = fit(USUAL_S.max(4.0 * set_up_s)).min(MOST_BY_DEFAULT);
-    let Some(wanted) = wanted.map(NonZeroU32::get) else {
-        let fewest = FEWEST_BY_DEFAULT;
-        let has_room = fit((USUAL_S / 2.0).max(2.0 * set_up_s)) >= fewest;
-        return Ok(if has_room { usual.max(fewest) } else { 1 });
-    };
-    let most = fit(SHORTEST_S.max(2.0 * set_up_s)).max(1);
-    if wanted > most {
-        return Err(Failure::usage(format!(
-            "--launches {wanted} is too many: a budget of {budget_s} s holds at most {} on this mesh; use fewer, or \
-             a longer --budget",
-            counted(most as usize, "launch", "launches")
-        )));
-    }
-    Ok(wanted)
-}
-
-/// Runs `count` launches of this command one after the other within `effort`, and pools their documents. If the
-/// command has several meshes, each launch measures the one called `mesh`. A launch that dies is left out with a
-/// notice, see [`has_died`]. If the flag `stop` is set, the launch that runs ends early.
-///
-/// # Errors
-///
-/// Returns the failure of the first launch if it refuses to measure, or if no launch has a document.
-fn run(
-    count: u32,
-    effort: Effort,
-    mesh: Option<&str>,
-    stop: &AtomicBool,
-    show: &dyn Fn(f64, &str),
-) -> Result<Results, Failure> {
-    let start = match mesh {
-        None => *START,
-        Some(_) => Instant::now(),
-    };
-    let mut documents: Vec<Results> = Vec::new();
-    let mut first_death = None;
-    for number in 0..count {
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
-        let budget_s = effort.budget().map(|budget| {
-            let left = budget.saturating_sub(start.elapsed());
-            left.as_secs_f64() / f64::from(count - number)
-        });
-        let launch = Launch {
-            number,
-            budget_s,
-            mesh: mesh.map(str::to_owned),
-        };
-        let position = format!("launch {} of {count}", number + 1);
-        let show = |line: &str| {
-            let step = line.split_once(" % ");
-            let step = step.and_then(|(percent, what)| Some((percent.parse::<f64>().ok()?, what)));
-            if let Some((percent, what)) = step {
-                let done = (f64::from(number) + percent / 100.0) / f64::from(count);
-                show(done, &format!("{position}: {what}"));
-            }
-        };
-        match run_one(&launch, stop, &show) {
-            Ok(document) => documents.push(document),
-            // What one launch refuses, all refuse.
-            Err(failure) if failure.code != DIED => return Err(failure),
-            Err(failure) => {
-                print_notice(&format!(
-                    "note: {position} is left out: {}",
-                    failure.message
-                ));
-                HAS_DIED.store(true, Ordering::Relaxed);
-                first_death.get_or_insert(failure);
-            }
-        }
-    }
-    match first_death.filter(|_| documents.is_empty()) {
-        Some(first) => Err(Failure::usage(format!(
-            "no launch has a result: {}",
-            first.message
-        ))),
-        None => pool_launches(documents).map_err(Failure::usage),
-    }
-}
-
-/// How a command with one finding measures.
-pub(crate) struct Plan<'p> {
-    /// The number of launches; with one, this process measures.
-    pub(crate) count: u32,
-    /// How much the whole command measures.
-    pub(crate) effort: Effort,
-    /// The name of the mesh to measure, if the command has several.
-    pub(crate) mesh: Option<&'p str>,
+/// What a command launches.
+pub(crate) struct Launching<'p> {
+    /// The number of launches that the user wants; `None` for as many as the budget holds.
+    pub(crate) wanted: Option<NonZeroU32>,
+    /// The files that each launch reads again.
+    pub(crate) paths: Vec<&'p Path>,
+    /// The part of the command that is measured, if it has several.
+    pub(crate) part: Option<Part>,
     /// The flag that ends the measurement.
     pub(crate) stop: &'p AtomicBool,
 }
 
-impl Plan<'_> {
-    /// Measures in this process, by `here`, or in several launches, see [`run`]. A finding of several launches gets
-    /// `meshes`, which this process has read, with their pictures; growth makes its own. `show` is called with the
-    /// finished part, from 0 to 1, and the current step.
+impl<'p> Launching<'p> {
+    /// Returns the plan to measure `effort` on meshes with `faces` faces together.
     ///
     /// # Errors
     ///
-    /// Returns the errors of `here` or of [`run`], and an error if the command was interrupted before the first result.
+    /// Returns an error if the budget does not hold the wanted number of launches, or if a mesh cannot be read
+    /// again. A lab of a report then has as many launches as its budget holds.
+    pub(crate) fn plan(&self, effort: Effort, faces: usize) -> Result<Plan<'p>, Failure> {
+        Ok(Plan {
+            count: self.count(effort, faces)?,
+            effort,
+            part: self.part.clone(),
+            stop: self.stop,
+        })
+    }
+
+    /// Returns the number of launches.
+    fn count(&self, effort: Effort, faces: usize) -> Result<u32, Failure> {
+        if Launch::current().is_some() {
+            return Ok(1);
+        }
+        let wanted = self.wanted.map(NonZeroU32::get);
+        if let Some(path) = self.paths.iter().find(|path| !path.is_file()) {
+            return match wanted.unwrap_or(1) {
+                1 => Ok(1),
+                wanted => Err(Failure::usage(format!(
+                    "{}: is not a file, so it cannot be read {wanted} times: save it to a file, or use --launches 1",
+                    shown(path)
+                ))),
+            };
+        }
+        let Some(budget) = effort.budget() else {
+            return Ok(wanted.unwrap_or(1));
+        };
+        let budget_s = budget.as_secs_f64();
+        let set_up_s = SET_UP_S_PER_FACE * faces as f64;
+        let fit = |each_s: f64| (budget_s / each_s) as u32;
+        let usual = fit(USUAL_S.max(4.0 * set_up_s)).min(MOST_BY_DEFAULT);
+        let Some(wanted) = wanted else {
+            let fewest = FEWEST_BY_DEFAULT;
+            let has_room = fit((USUAL_S / 2.0).max(2.0 * set_up_s)) >= fewest;
+            return Ok(if has_room { usual.max(fewest) } else { 1 });
+        };
+        let most = fit(SHORTEST_S.max(2.0 * set_up_s)).max(1);
+        if wanted <= most {
+            return Ok(wanted);
+        }
+        let held = format!(
+            "a budget of {budget_s} s holds at most {}",
+            counted(most as usize, "launch", "launches")
+        );
+        match self.part {
+            Some(Part::Lab(lab)) => {
+                print_notice(&format!(
+                    "note: {lab} does not have {wanted} launches: {held}"
+                ));
+                Ok(most)
+            }
+            _ => Err(Failure::usage(format!(
+                "--launches {wanted} is too many: {held} on this mesh; use fewer, or a longer --budget"
+            ))),
+        }
+    }
+}
+
+/// How a command, or a part of it, measures.
+pub(crate) struct Plan<'p> {
+    /// The number of launches; with one, this process measures.
+    count: u32,
+    /// How much all launches measure together.
+    effort: Effort,
+    part: Option<Part>,
+    stop: &'p AtomicBool,
+}
+
+impl Plan<'_> {
+    /// Returns whether this process measures, and no launch.
+    pub(crate) const fn is_here(&self) -> bool {
+        self.count == 1
+    }
+
+    /// Measures one finding in this process, by `here`, or in several launches, see [`launched`](Self::launched).
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of `here` or of the launches.
     pub(crate) fn measure<T: TryFrom<Finding>>(
         &self,
         meshes: Option<Vec<MeshReport>>,
         show: &dyn Fn(f64, &str),
         here: impl FnOnce() -> Result<T, Failure>,
     ) -> Result<T, Failure> {
-        if self.count == 1 {
+        if self.is_here() {
             return here();
         }
-        let results = run(self.count, self.effort, self.mesh, self.stop, show)?;
+        let results = self.launched(meshes, show)?;
         let mut findings = results.findings.into_iter();
-        let mut finding = findings.next().ok_or_else(interrupted_early)?;
-        finding.run_mut().settings.budget_s = self.effort.run_settings().budget_s;
-        if let Some(meshes) = meshes {
-            finding.set_meshes(meshes).map_err(Failure::usage)?;
-        }
-        // An interruption between two launches is in none of them.
-        if self.stop.load(Ordering::Relaxed) {
-            finding.set_interrupted();
-        }
+        let finding = findings.next().ok_or_else(interrupted_early)?;
         T::try_from(finding).map_err(|_| interrupted_early())
+    }
+
+    /// Measures in several launches. The findings get `meshes`, which this process has read, with their pictures;
+    /// growth makes its own. `show` is called with the finished part, from 0 to 1, and the current step.
+    ///
+    /// # Errors
+    ///
+    /// Returns the failure of the first launch if it refuses to measure, or if no launch has a document. Returns an
+    /// error if the command was interrupted before the first result.
+    pub(crate) fn launched(
+        &self,
+        meshes: Option<Vec<MeshReport>>,
+        show: &dyn Fn(f64, &str),
+    ) -> Result<Results, Failure> {
+        let mut results = self.run(show)?;
+        let is_stopped = self.stop.load(Ordering::Relaxed);
+        if is_stopped && results.findings.is_empty() && !has_ended_early() {
+            return Err(interrupted_early());
+        }
+        for finding in &mut results.findings {
+            finding.run_mut().settings.budget_s = self.effort.run_settings().budget_s;
+            if let Some(meshes) = &meshes {
+                finding.set_meshes(meshes.clone()).map_err(Failure::usage)?;
+            }
+            // An interruption between two launches is in none of them.
+            if is_stopped {
+                finding.set_interrupted();
+            }
+        }
+        Ok(results)
+    }
+
+    /// Runs the launches one after the other, and pools their documents. A launch that dies is left out with a
+    /// notice, see [`has_died`]. A launch that ends early by itself is the last one, see [`has_ended_early`]. If the
+    /// flag `stop` is set, the launch that runs ends early.
+    fn run(&self, show: &dyn Fn(f64, &str)) -> Result<Results, Failure> {
+        let count = self.count;
+        let start = match self.part {
+            None => *START,
+            Some(_) => Instant::now(),
+        };
+        let mut documents: Vec<Results> = Vec::new();
+        let mut first_death = None;
+        for number in 0..count {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            let budget_s = self.effort.budget().map(|budget| {
+                let left = budget.saturating_sub(start.elapsed());
+                left.as_secs_f64() / f64::from(count - number)
+            });
+            let launch = Launch {
+                number,
+                budget_s,
+                part: self.part.clone(),
+            };
+            let position = format!("launch {} of {count}", number + 1);
+            let show = |line: &str| {
+                let step = line.split_once(" % ");
+                let step =
+                    step.and_then(|(percent, what)| Some((percent.parse::<f64>().ok()?, what)));
+                if let Some((percent, what)) = step {
+                    let done = (f64::from(number) + percent / 100.0) / f64::from(count);
+                    show(done, &format!("{position}: {what}"));
+                }
+            };
+            match run_one(&launch, self.stop, &show) {
+                Ok((document, ended_early)) => {
+                    documents.push(document);
+                    // The next launch would not end either.
+                    if let Some(why) = ended_early {
+                        print_notice(&format!("error: {position} is the last one: {why}"));
+                        HAS_ENDED_EARLY.store(true, Ordering::Relaxed);
+                        break;
+                    }
+                }
+                // What one launch refuses, all refuse.
+                Err(failure) if failure.code != DIED => return Err(failure),
+                Err(failure) => {
+                    let of = match &self.part {
+                        Some(Part::Lab(lab)) => format!(" of {lab}"),
+                        Some(Part::Mesh(_)) | None => String::new(),
+                    };
+                    print_notice(&format!(
+                        "note: {position}{of} is left out: {}",
+                        failure.message
+                    ));
+                    HAS_DIED.store(true, Ordering::Relaxed);
+                    first_death.get_or_insert(failure);
+                }
+            }
+        }
+        match first_death.filter(|_| documents.is_empty()) {
+            Some(first) => Err(Failure::usage(format!(
+                "no launch has a result: {}",
+                first.message
+            ))),
+            None => pool_launches(documents).map_err(Failure::usage),
+        }
     }
 }
 
@@ -266,6 +329,8 @@ fn interrupted_early() -> Failure {
 
 /// Whether a launch died.
 static HAS_DIED: AtomicBool = AtomicBool::new(false);
+/// Whether a launch ended early by itself.
+static HAS_ENDED_EARLY: AtomicBool = AtomicBool::new(false);
 /// The exit code that stands for a launch that died. No command has it.
 const DIED: u8 = u8::MAX;
 
@@ -274,8 +339,31 @@ pub(crate) fn has_died() -> bool {
     HAS_DIED.load(Ordering::Relaxed)
 }
 
-/// Runs one launch, and returns its document.
-fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Results, Failure> {
+/// Returns whether a launch of this command ended early because a program of a user did not end, so that the result
+/// lacks what follows.
+pub(crate) fn has_ended_early() -> bool {
+    HAS_ENDED_EARLY.load(Ordering::Relaxed)
+}
+
+/// The line before the document of a launch. A program of a user may print other lines before it.
+const DOCUMENT_MARK: &[u8] = b"the document of a launch of sixfold:\n";
+
+/// Writes the line before a document, if this process is a launch.
+pub(crate) fn mark_document(writer: &mut dyn Write) -> io::Result<()> {
+    if Launch::current().is_none() {
+        return Ok(());
+    }
+    // The last line of a program may be incomplete.
+    writer.write_all(b"\n")?;
+    writer.write_all(DOCUMENT_MARK)
+}
+
+/// Runs one launch. Returns its document, and the reason if the launch ended early by itself.
+fn run_one(
+    launch: &Launch,
+    stop: &AtomicBool,
+    show: &dyn Fn(&str),
+) -> Result<(Results, Option<String>), Failure> {
     let died = |message: String| Failure {
         code: DIED,
         message,
@@ -292,9 +380,9 @@ fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Re
         .spawn()
         .map_err(cannot_start)?;
     let (output, errors) = (child.stdout.take(), child.stderr.take());
-    let output = thread::spawn(|| output.map(read_all));
+    let output = thread::spawn(|| output.map(read_document));
     let lines = lines(errors);
-    let mut said = Vec::new();
+    let mut said = Said::default();
     loop {
         if stop.load(Ordering::Relaxed) {
             drop(child.stdin.take());
@@ -302,7 +390,7 @@ fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Re
         match lines.recv_timeout(PATIENCE) {
             Ok(line) => match line.strip_prefix(PROGRESS_MARK) {
                 Some(progress) => show(progress),
-                None => said.push(line),
+                None => said.add(line),
             },
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
@@ -313,52 +401,99 @@ fn run_one(launch: &Launch, stop: &AtomicBool, show: &dyn Fn(&str)) -> Result<Re
     let status = child.wait().map_err(cannot_start)?;
     drop(stdin);
     let text = output.join().ok().flatten();
-    document(status, &text.unwrap_or_default(), &said)
+    document(status, &text.unwrap_or_default(), said)
 }
 
-/// Returns the document of a launch that has ended.
-fn document(status: ExitStatus, text: &str, said: &[String]) -> Result<Results, Failure> {
-    let error = said.iter().find_map(|line| line.strip_prefix("error: "));
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    match (Results::read_json(text), code) {
-        // Different results and interruptions are in the document.
-        (Ok(results), Some(0 | 1 | INTERRUPTED)) => Ok(results),
-        (_, Some(code)) if error.is_some() => Err(Failure {
-            code,
-            message: error.map(sanitize).unwrap_or_default(),
-        }),
-        (Ok(_), _) => Err(Failure {
-            code: DIED,
-            message: format!("it ended with {status}"),
-        }),
-        (Err(cause), _) => Err(Failure {
-            code: DIED,
-            message: format!("it ended with {status}, and its document {cause}"),
-        }),
+/// What a launch wrote to standard error besides its progress.
+#[derive(Default)]
+struct Said {
+    /// The first error message.
+    error: Option<String>,
+    /// The last line, without notes.
+    last: String,
+}
+
+impl Said {
+    fn add(&mut self, line: String) {
+        if let (None, Some(message)) = (&self.error, line.strip_prefix("error: ")) {
+            self.error = Some(sanitize(message));
+        }
+        if !line.starts_with("note: ") {
+            self.last = line;
+        }
     }
 }
 
-fn read_all(mut output: ChildStdout) -> String {
-    let mut bytes = Vec::new();
-    // A launch that dies has an incomplete document, which cannot be parsed.
-    let _ = output.read_to_end(&mut bytes);
-    String::from_utf8_lossy(&bytes).into_owned()
+/// Returns the document of a launch that has ended, and the reason if it ended early by itself.
+fn document(
+    status: ExitStatus,
+    text: &str,
+    said: Said,
+) -> Result<(Results, Option<String>), Failure> {
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    let died = |what: String| Failure {
+        code: DIED,
+        message: match sanitize(&said.last) {
+            last if last.is_empty() => what,
+            last => format!("{what}; its last line was: {last}"),
+        },
+    };
+    match (Results::read_json(text), code, said.error) {
+        // A program that did not end.
+        (Ok(results), Some(INTERRUPTED), error) => Ok((results, error)),
+        // Different results are in the document.
+        (Ok(results), Some(0 | 1), _) => Ok((results, None)),
+        (_, Some(code), Some(message)) => Err(Failure { code, message }),
+        (Ok(_), ..) => Err(died(format!("it ended with {status}"))),
+        (Err(_), None, _) if text.is_empty() => Err(died(format!("it ended with {status}"))),
+        (Err(_), ..) if text.is_empty() => {
+            Err(died(format!("it ended with {status}, without a document")))
+        }
+        (Err(cause), ..) => Err(died(format!(
+            "it ended with {status}, and its document {cause}"
+        ))),
+    }
+}
+
+/// Returns what follows the last [`DOCUMENT_MARK`]; an empty text without one.
+fn read_document(output: ChildStdout) -> String {
+    let mut document = None;
+    for_each_line(output, |line| {
+        match &mut document {
+            _ if line == DOCUMENT_MARK => document = Some(Vec::new()),
+            Some(document) => document.extend_from_slice(line),
+            None => {}
+        }
+        true
+    });
+    String::from_utf8_lossy(&document.unwrap_or_default()).into_owned()
 }
 
 /// Returns the lines of `errors`, the standard error of a launch.
-fn lines(errors: Option<ChildStderr>) -> Receiver<String> {
+fn lines(errors: Option<impl Read + Send + 'static>) -> Receiver<String> {
     let (sender, receiver) = channel();
     thread::spawn(move || {
-        let lines = errors
-            .into_iter()
-            .flat_map(|errors| BufReader::new(errors).lines());
-        for line in lines.map_while(Result::ok) {
-            if sender.send(line).is_err() {
-                break;
-            }
-        }
+        let Some(errors) = errors else { return };
+        for_each_line(errors, |line| {
+            let line = String::from_utf8_lossy(line);
+            sender.send(line.trim_end().to_owned()).is_ok()
+        });
     });
     receiver
+}
+
+/// Calls `take` with each line of `input`, until it returns false.
+fn for_each_line(input: impl Read, mut take: impl FnMut(&[u8]) -> bool) {
+    let mut input = BufReader::new(input);
+    let mut line = Vec::new();
+    // A launch that dies has an incomplete document, which cannot be parsed.
+    while input
+        .read_until(b'\n', &mut line)
+        .is_ok_and(|count| count > 0)
+        && take(&line)
+    {
+        line.clear();
+    }
 }
 
 #[cfg(test)]
@@ -369,10 +504,18 @@ mod tests {
         Effort::Budget(Duration::from_secs_f64(seconds))
     }
 
-    const NO_FILES: [&Path; 0] = [];
+    fn count(wanted: Option<u32>, effort: Effort, faces: usize) -> Result<u32, Failure> {
+        let launching = Launching {
+            wanted: wanted.and_then(NonZeroU32::new),
+            paths: Vec::new(),
+            part: None,
+            stop: &AtomicBool::new(false),
+        };
+        launching.count(effort, faces)
+    }
 
     fn by_default(budget_s: f64, faces: usize) -> u32 {
-        count(None, seconds(budget_s), NO_FILES, faces).expect("no number was given")
+        count(None, seconds(budget_s), faces).expect("no number was given")
     }
 
     #[test]
@@ -391,12 +534,12 @@ mod tests {
             [1, 3, 5]
         );
         let rounds = Effort::Rounds(NonZeroU32::new(8).expect("above 0"));
-        assert_eq!(count(None, rounds, NO_FILES, 1000).ok(), Some(1));
+        assert_eq!(count(None, rounds, 1000).ok(), Some(1));
     }
 
     #[test]
     fn a_budget_holds_a_limited_number_of_launches() {
-        let wanted = |n| count(NonZeroU32::new(n), seconds(2.0), NO_FILES, 1000);
+        let wanted = |n| count(Some(n), seconds(2.0), 1000);
         assert_eq!(wanted(4).ok(), Some(4));
         let refused = wanted(5).expect_err("too many");
         assert_eq!(refused.code, 2);
@@ -406,9 +549,6 @@ mod tests {
             "{message}"
         );
         let rounds = Effort::Rounds(NonZeroU32::MIN);
-        assert_eq!(
-            count(NonZeroU32::new(500), rounds, NO_FILES, 1000).ok(),
-            Some(500)
-        );
+        assert_eq!(count(Some(500), rounds, 1000).ok(), Some(500));
     }
 }

@@ -122,6 +122,7 @@ use failure::Failure;
 /// The command line measures each program on each structure that can hold the meshes of the
 /// arguments. The option `--help` describes the arguments.
 pub fn main(programs: impl Into<Suite>) -> ExitCode {
+    launches::note_start();
     exit_code(programs::run(programs.into()))
 }
 

@@ -18,10 +18,10 @@ use sixfold_study::{Settings, StudyMesh};
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
-use crate::launches;
+use crate::launches::{Launching, Part};
 use crate::listed_folder::ListedFolder;
 use crate::load;
-use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
+use crate::measure::{Session, command_line, exit_code, warn_of_debug_build, with_command};
 use crate::mesh_files::shown;
 use crate::mesh_picture::with_picture;
 use crate::paper;
@@ -31,7 +31,7 @@ use crate::text::{TextOutput, hanging_indent, print_notice, sanitize, take_notic
 use sixfold_results::numbers::counted;
 
 pub(crate) use draw::run as draw;
-pub(crate) use labs::LabSelection;
+pub(crate) use labs::{Lab, LabSelection};
 pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
@@ -96,12 +96,16 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         let runner = labs::LabRunner {
             study_mesh,
             settings,
-            triangulate: arguments.triangulate,
-            folder,
-            resumed: selected.is_empty(),
+            launches: arguments.launching.launches,
+            path: meshes[0].path.as_deref(),
             stop: &stop,
         };
-        saved = saved.and(runner.run(&selected_labs, &mut results));
+        let kept = labs::Kept {
+            folder,
+            resumed: selected.is_empty(),
+            triangulate: arguments.triangulate,
+        };
+        saved = saved.and(runner.run(&selected_labs, &kept, &mut results));
     }
     let interrupted = stop.load(Ordering::Relaxed);
     print(&results, single, &mut session.text);
@@ -127,6 +131,37 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         return Err(failure_of_all(&results.failures));
     }
     exit_code(written, &results, interrupted)
+}
+
+/// Measures one lab of a report, as a launch.
+pub(crate) fn run_lab(
+    arguments: &Study,
+    settings: &Settings,
+    lab: Lab,
+) -> Result<ExitCode, Failure> {
+    let meshes = find_meshes(&arguments.meshes, &mut |_| ())?;
+    let path = meshes.first().and_then(|mesh| mesh.path.as_deref());
+    let session = Session::open(path, &arguments.files, settings.heap)?;
+    let study_mesh = load::mesh_or_built_in(
+        path,
+        arguments.read,
+        arguments.strict,
+        arguments.triangulate,
+    )?;
+    let labs = labs::selected_labs(arguments.labs.as_ref(), true)?;
+    let runner = labs::LabRunner {
+        study_mesh: &study_mesh,
+        settings: &Settings {
+            effort: arguments.effort(1 + labs.len()),
+            ..settings.clone()
+        },
+        launches: arguments.launching.launches,
+        path,
+        stop: &session.stop,
+    };
+    let measured = runner.measure(lab, &Bar::new())?;
+    let measured = measured.map(|finding| with_command(finding, arguments.triangulate));
+    session.finish(measured.map_or_else(Results::default, Results::from))
 }
 
 /// Returns the meshes of the shard without a study.
@@ -227,22 +262,14 @@ impl FolderRun<'_> {
                 return failed(FailureKind::NotMeasured, reason);
             }
         };
-        let faces = study_mesh.polygons.face_count();
-        let launches = match launches::count(
-            self.arguments.launching.launches,
-            self.settings.effort,
-            mesh.path.as_deref(),
-            faces,
-        ) {
-            Ok(launches) => launches,
-            Err(failure) => return failed(FailureKind::NotMeasured, failure.message),
+        let launching = Launching {
+            wanted: self.arguments.launching.launches,
+            paths: mesh.path.as_deref().into_iter().collect(),
+            part: Some(Part::Mesh(mesh.name.clone())),
+            stop: self.stop,
         };
         let bar = Bar::after(&format!("{position}, {}: ", mesh.name));
-        let name = Some(mesh.name.as_str());
-        let show = |done, what: &str| bar.set(done, what);
-        let report = measure(study_mesh, self.settings, launches, name, self.stop, &show);
-        bar.clear();
-        match report {
+        match measure(study_mesh, self.settings, &launching, &bar) {
             Ok(report) if report.interrupted && report.results.is_empty() => None,
             Ok(report) => Some(Ok(report)),
             Err(failure) if failure.is_unsupported() => {

@@ -116,7 +116,10 @@ impl Session {
         } = self.files;
         let mut done = self.text.finish().and(self.baselines.save(results));
         if let Some(output) = json {
-            done = done.and(output.finish(|writer| results.write_json(writer)));
+            done = done.and(output.finish(|writer| {
+                launches::mark_document(writer)?;
+                results.write_json(writer)
+            }));
         }
         if let Some(output) = csv {
             done = done.and(output.finish(|writer| results.write_csv(writer)));
@@ -182,28 +185,32 @@ pub(crate) fn exit_code(
         }
         false => "This is a fault in Sixfold: please report it",
     };
-    let code = code_of(written, results.mismatches(), cause, interrupted)?;
+    let end = match () {
+        () if interrupted || launches::has_ended_early() => INTERRUPTED,
+        // A dead launch is missing in the result.
+        () if launches::has_died() => MISMATCH,
+        () => 0,
+    };
+    let code = code_of(written, results.mismatches(), cause, end)?;
     if interrupted {
         print_stderr(match results.findings.is_empty() {
             true => "interrupted: no result was finished",
             false => "interrupted: finished results are kept",
         });
     }
-    // A dead launch is missing in the result.
-    let is_short = launches::has_died() && !interrupted;
-    Ok(match others > 0 || is_short {
+    Ok(match others > 0 {
         true => ExitCode::from(MISMATCH),
         false => code,
     })
 }
 
 /// Returns the exit code without regard to external programs, and prints the message about different
-/// results.
+/// results. `end` is the exit code if no results differ.
 fn code_of(
     written: Result<(), Failure>,
     mismatches: usize,
     cause: &str,
-    interrupted: bool,
+    end: u8,
 ) -> Result<ExitCode, Failure> {
     if mismatches > 0 {
         let results = counted(mismatches, "result differs", "results differ");
@@ -212,13 +219,7 @@ fn code_of(
         ));
     }
     written?;
-    if mismatches > 0 {
-        return Ok(ExitCode::from(MISMATCH));
-    }
-    if interrupted {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    Ok(ExitCode::SUCCESS)
+    Ok(ExitCode::from(if mismatches > 0 { MISMATCH } else { end }))
 }
 
 /// Prints an error about a result of an external program that differs from the results of Sixfold.
@@ -244,14 +245,14 @@ mod tests {
 
     #[test]
     fn mismatches_take_precedence_over_an_interruption() {
-        let code = |mismatches, interrupted| {
-            let result = code_of(Ok(()), mismatches, "", interrupted).expect("all is written");
+        let code = |mismatches, end| {
+            let result = code_of(Ok(()), mismatches, "", end).expect("all is written");
             format!("{result:?}")
         };
         let known = |code: u8| format!("{:?}", ExitCode::from(code));
-        assert_eq!(code(0, false), known(0));
-        assert_eq!(code(0, true), known(INTERRUPTED));
-        assert_eq!(code(2, true), known(MISMATCH));
-        assert!(code_of(Err(Failure::usage("full disk")), 1, "", true).is_err());
+        assert_eq!(code(0, 0), known(0));
+        assert_eq!(code(0, INTERRUPTED), known(INTERRUPTED));
+        assert_eq!(code(2, INTERRUPTED), known(MISMATCH));
+        assert!(code_of(Err(Failure::usage("full disk")), 1, "", INTERRUPTED).is_err());
     }
 }

@@ -10,7 +10,7 @@ use sixfold_study::{NeighboursSettings, Progress};
 use crate::arguments::Neighbours;
 use crate::facts_text::facts_text;
 use crate::failure::Failure;
-use crate::launches::{self, Plan};
+use crate::launches::{self, Launching};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -33,17 +33,14 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
     session.text.print_line(&facts_text(&study_mesh.report()));
-    let (given, faces) = (
-        arguments.launching.launches,
-        study_mesh.polygons.face_count(),
-    );
-    let bar = Bar::new();
-    let plan = Plan {
-        count: launches::count(given, settings.effort, mesh, faces)?,
-        effort: settings.effort,
-        mesh: None,
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: mesh.into_iter().collect(),
+        part: None,
         stop: &session.stop,
     };
+    let plan = launching.plan(settings.effort, study_mesh.polygons.face_count())?;
+    let bar = Bar::new();
     let reports = Some(vec![study_mesh.report()]);
     let report = plan.measure(reports, &|done, what| bar.set(done, what), || {
         let mut show = |at: Progress<'_>| bar.show(at);

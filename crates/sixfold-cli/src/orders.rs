@@ -1,18 +1,17 @@
 //! `sixfold orders`: measures how the order of a mesh in memory affects each backend.
 
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Cell, Table};
 use sixfold::shapes::Order;
 use sixfold_results::{Comparison, OrdersReport, ResultRow};
-use sixfold_study::{DEFAULT_OPERATIONS, Settings, StudyError, StudyMesh};
+use sixfold_study::{DEFAULT_OPERATIONS, Progress, Settings, StudyError, StudyMesh};
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches::{self, Plan};
+use crate::launches::{self, Launching};
 use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -39,44 +38,43 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     };
     warn_of_debug_build();
     print_before_measuring(&study_mesh, &settings, &mut session.text);
-    let faces = study_mesh.polygons.face_count();
-    let given = arguments.launching.launches;
-    let bar = Bar::new();
-    let plan = Plan {
-        count: launches::count(given, settings.effort, mesh, Order::ALL.len() * faces)?,
-        effort: settings.effort,
-        mesh: None,
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: mesh.into_iter().collect(),
+        part: None,
         stop: &session.stop,
     };
-    let reports = Some(vec![study_mesh.report()]);
-    let report = plan.measure(reports, &|done, what| bar.set(done, what), || {
-        measure(&study_mesh, &settings, &session.stop, &bar)
-    });
-    bar.clear();
-    let report = report?;
+    let report = measure(&study_mesh, &settings, &launching, &Bar::new())?;
     print(&report, &mut session.text);
     session.finish(with_command(report, arguments.triangulate).into())
 }
 
-/// Measures the mesh in all orders, if there is enough free memory.
+/// Measures the mesh in all orders, if there is enough free memory: in this process, or in several launches.
 pub(crate) fn measure(
     study_mesh: &StudyMesh,
     settings: &Settings,
-    stop: &AtomicBool,
+    launching: &Launching<'_>,
     bar: &Bar,
 ) -> Result<OrdersReport, Failure> {
+    let faces = study_mesh.polygons.face_count();
+    let plan = launching.plan(settings.effort, Order::ALL.len() * faces)?;
     let needed = sixfold_study::orders_bytes(study_mesh, settings).map_err(Failure::usage)?;
     check_free_memory(
         "the mesh in four orders on each backend",
         needed,
         "choose fewer --backends, or a smaller mesh",
     )?;
-    let report = sixfold_study::orders(study_mesh, settings, stop, &mut |at| bar.show(at));
+    let meshes = Some(vec![study_mesh.report()]);
+    let report = plan.measure(meshes, &|done, what| bar.set(done, what), || {
+        let mut show = |at: Progress<'_>| bar.show(at);
+        let report = sixfold_study::orders(study_mesh, settings, launching.stop, &mut show);
+        report.map_err(|error| match error {
+            StudyError::NoneHolds { .. } => Failure::unsupported(error),
+            error => Failure::usage(error),
+        })
+    });
     bar.clear();
-    report.map_err(|error| match error {
-        StudyError::NoneHolds { .. } => Failure::unsupported(error),
-        error => Failure::usage(error),
-    })
+    report
 }
 
 /// Returns the help text after the options.

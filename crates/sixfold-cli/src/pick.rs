@@ -12,11 +12,11 @@ use sixfold_study::{
 use crate::arguments::{Pick, ReadFiles};
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::launches::{self, Launch, Plan};
+use crate::launches::{self, Launch, Launching};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
-use crate::programs::{self, Limits, default_memory_limit};
+use crate::programs::{Limits, Measurement, default_memory_limit};
 use crate::progress::Bar;
 use crate::signs::Signs;
 use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let workload = workload(&arguments.workload)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
-    let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
+    let mut session = Session::open(paths.clone(), &arguments.files, arguments.heap)?;
     let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
     let study_meshes: Vec<StudyMesh> = drawn.collect();
@@ -47,25 +47,18 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         seed: launches::seed(arguments.seed),
         heap: arguments.heap,
     };
-    let count = launches::count(
-        arguments.launching.launches,
-        settings.effort,
-        meshes.iter().filter_map(|mesh| mesh.path.as_deref()),
-        study_meshes
-            .iter()
-            .map(|mesh| mesh.polygons.face_count())
-            .sum(),
-    )?;
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: paths.collect(),
+        part: None,
+        stop: &session.stop,
+    };
+    let faces = study_meshes.iter().map(|mesh| mesh.polygons.face_count());
+    let plan = launching.plan(settings.effort, faces.sum())?;
     warn_of_debug_build();
     if Launch::current().is_none() {
         print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
     }
-    let plan = Plan {
-        count,
-        effort: settings.effort,
-        mesh: None,
-        stop: &session.stop,
-    };
     let bar = Bar::new();
     let reports = study_meshes.iter().map(StudyMesh::report).collect();
     let report = plan.measure(Some(reports), &|done, what| bar.set(done, what), || {
@@ -90,11 +83,6 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
 
 /// Ranks the structures for the calls of a trace.
 fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
-    if arguments.launching.launches.is_some() {
-        return Err(Failure::usage(
-            "a trace is measured in one launch: leave --launches out",
-        ));
-    }
     let shown = path.display().to_string();
     let cannot_read = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
     let file = std::fs::File::open(path).map_err(cannot_read)?;
@@ -109,18 +97,22 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         runs: 1,
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
-        seed: arguments.seed,
+        seed: launches::seed(arguments.seed),
         heap: arguments.heap,
         isolation: None,
     };
-    programs::measure(
-        &Suite::new().trace(trace),
-        &settings,
-        &arguments.meshes,
-        (arguments.read, arguments.triangulate),
-        &arguments.files,
-        Limits::new(settings.effort, default_memory_limit()),
-    )
+    let measurement = Measurement {
+        suite: &Suite::new().trace(trace),
+        settings: &settings,
+        meshes: &arguments.meshes,
+        read: arguments.read,
+        triangulate: arguments.triangulate,
+        trace: Some(path),
+        launches: arguments.launching.launches,
+        files: &arguments.files,
+        limits: Limits::new(settings.effort, default_memory_limit()),
+    };
+    measurement.run()
 }
 
 /// Reads the meshes. Without a path, a mesh is the built-in mesh. If one of several cannot be read,

@@ -4,7 +4,8 @@ mod record;
 
 use std::fmt::Display;
 use std::io;
-use std::path::PathBuf;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -23,6 +24,7 @@ use crate::arguments::{Programs, ReadFiles, ResultFiles};
 use crate::failure::Failure;
 use crate::free_memory::used_memory;
 use crate::help::fit_to_width;
+use crate::launches::{self, Launching};
 use crate::load;
 use crate::many::find_meshes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -77,23 +79,31 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
         runs: arguments.runs,
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
-        seed: arguments.seed,
+        seed: launches::seed(arguments.seed),
         heap: arguments.heap,
     };
-    match &arguments.record {
-        Some(folder) => record::run(&suite, &settings, folder, &arguments),
-        None => measure(
-            &suite,
-            &settings,
-            &arguments.meshes,
-            (arguments.read, arguments.triangulate),
-            &arguments.files,
-            Limits {
-                sample: arguments.time_limit.filter(|_| !arguments.isolate),
-                ..Limits::new(arguments.effort.effort(), memory_limit)
-            },
-        ),
+    if let Some(folder) = &arguments.record {
+        return record::run(&suite, &settings, folder, &arguments);
     }
+    let measurement = Measurement {
+        suite: &suite,
+        settings: &settings,
+        meshes: &arguments.meshes,
+        read: arguments.read,
+        triangulate: arguments.triangulate,
+        trace: None,
+        launches: match arguments.isolate {
+            // Each structure has a process of its own, and a structure that fails would fail in each launch.
+            true => Some(NonZeroU32::MIN),
+            false => arguments.launching.launches,
+        },
+        files: &arguments.files,
+        limits: Limits {
+            sample: arguments.time_limit.filter(|_| !arguments.isolate),
+            ..Limits::new(settings.effort, memory_limit)
+        },
+    };
+    measurement.run()
 }
 
 /// Returns how child processes run the programs.
@@ -138,59 +148,102 @@ fn serve(
 
 fn after_help(names: &[&str]) -> String {
     format!(
-        "Programs: {}\n\nExit codes: 0 success; 1 no structure qualifies for a program, or results \
-         differ between\nstructures; 2 wrong usage or unusable input; 4 interrupted, or a program \
-         did not end;\nfinished results are kept.",
+        "Programs: {}\n\nLaunches: Fresh processes of this command measure one after the other, each all \
+         programs. What\nthey print is not shown. If a program does not end or uses too much memory, \
+         its launch is the last\none. If a program crashes, its launch is left out.\n\nExit codes: 0 success; \
+         1 no structure qualifies for a program, results differ between structures,\nor a launch is \
+         left out; 2 wrong usage or unusable input, or all launches are left out;\n4 interrupted, or \
+         a program did not end; finished results are kept.",
         names.join(", ")
     )
 }
 
-/// Measures the programs of `suite` on `meshes`, prints the answers and writes the files.
-pub(crate) fn measure(
-    suite: &Suite,
-    settings: &ProgramSettings,
-    meshes: &[PathBuf],
-    (read, triangulate): (ReadFiles, bool),
-    files: &ResultFiles,
-    limits: Limits,
-) -> Result<ExitCode, Failure> {
-    let meshes = find_meshes(meshes, &mut |note| print_notice(note))?;
-    let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
-    let mut session = Session::open(paths, files, settings.heap)?;
-    let study_meshes = pick::study_meshes(&meshes, read, triangulate)?;
-    let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
-    let study_meshes: Vec<StudyMesh> = drawn.collect();
-    warn_of_debug_build();
-    print_meshes(&study_meshes, &mut session.text);
-    for program in suite.programs().iter().filter(|p| p.own_ns() != 0.0) {
-        let line = format!(
-            "{} ns of each run are the program's own work; added to every time",
-            figure(program.own_ns())
-        );
-        session
-            .text
-            .print_line(&hanging_indent("Trace:    ", &line));
+/// What a command line of programs measures, and where the results go.
+pub(crate) struct Measurement<'a> {
+    pub(crate) suite: &'a Suite,
+    pub(crate) settings: &'a ProgramSettings,
+    pub(crate) meshes: &'a [PathBuf],
+    pub(crate) read: ReadFiles,
+    pub(crate) triangulate: bool,
+    /// The file with the calls of the program, if it is a trace.
+    pub(crate) trace: Option<&'a Path>,
+    /// The number of launches; `None` for as many as the budget holds.
+    pub(crate) launches: Option<NonZeroU32>,
+    pub(crate) files: &'a ResultFiles,
+    pub(crate) limits: Limits,
+}
+
+impl Measurement<'_> {
+    /// Measures the programs in this process or in several launches, prints the answers and writes the files.
+    pub(crate) fn run(&self) -> Result<ExitCode, Failure> {
+        let meshes = find_meshes(self.meshes, &mut |note| print_notice(note))?;
+        let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
+        let mut session = Session::open(paths.clone(), self.files, self.settings.heap)?;
+        let study_meshes = pick::study_meshes(&meshes, self.read, self.triangulate)?;
+        let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
+        let study_meshes: Vec<StudyMesh> = drawn.collect();
+        let stop = Arc::clone(&session.stop);
+        let launching = Launching {
+            wanted: self.launches,
+            paths: paths.chain(self.trace).collect(),
+            part: None,
+            stop: &stop,
+        };
+        let programs = self.suite.programs();
+        let faces = study_meshes.iter().map(|mesh| mesh.polygons.face_count());
+        let plan = launching.plan(self.settings.effort, programs.len() * faces.sum::<usize>())?;
+        warn_of_debug_build();
+        print_meshes(&study_meshes, &mut session.text);
+        for program in programs.iter().filter(|p| p.own_ns() != 0.0) {
+            let line = format!(
+                "{} ns of each run are the program's own work; added to every time",
+                figure(program.own_ns())
+            );
+            session
+                .text
+                .print_line(&hanging_indent("Trace:    ", &line));
+        }
+        let kept = Kept::new(session);
+        let bar = Bar::new();
+        if plan.is_here() {
+            self.measure_here(&study_meshes, &kept, &bar, &stop)?;
+        } else {
+            let reports = study_meshes.iter().map(StudyMesh::report).collect();
+            let results = plan.launched(Some(reports), &|done, what| bar.set(done, what));
+            bar.clear();
+            let results = results?;
+            results
+                .picks()
+                .for_each(|report| kept.add(report, self.triangulate));
+        }
+        kept.finish()
     }
-    let stop = Arc::clone(&session.stop);
-    let kept = Kept::new(session);
-    kept.end_at(limits, Arc::clone(&stop));
-    let bar = Bar::new();
-    let mut show = |done: f64, what: &str| {
-        bar.set(done, what);
-        kept.lock().begin_step(what);
-    };
-    let mut finished = |report: &PickReport| kept.add(report, triangulate);
-    let reports = sixfold_study::pick_for_programs(
-        &study_meshes,
-        suite,
-        settings,
-        &stop,
-        &mut show,
-        &mut finished,
-    );
-    bar.clear();
-    reports.map_err(Failure::usage)?;
-    kept.finish()
+
+    /// Measures the programs in this process, and keeps the report of each.
+    fn measure_here(
+        &self,
+        study_meshes: &[StudyMesh],
+        kept: &Kept,
+        bar: &Bar,
+        stop: &Arc<AtomicBool>,
+    ) -> Result<(), Failure> {
+        kept.end_at(self.limits, Arc::clone(stop));
+        let mut show = |done: f64, what: &str| {
+            bar.set(done, what);
+            kept.lock().begin_step(what);
+        };
+        let mut finished = |report: &PickReport| kept.add(report, self.triangulate);
+        let reports = sixfold_study::pick_for_programs(
+            study_meshes,
+            self.suite,
+            self.settings,
+            stop,
+            &mut show,
+            &mut finished,
+        );
+        bar.clear();
+        reports.map(|_| ()).map_err(Failure::usage)
+    }
 }
 
 fn print_meshes(study_meshes: &[StudyMesh], text: &mut TextOutput) {
@@ -311,7 +364,7 @@ impl Kept {
             results
         };
         let code = session.finish(results)?;
-        if kept.none_qualifies.is_empty() {
+        if kept.none_qualifies.is_empty() || launches::has_ended_early() {
             return Ok(code);
         }
         print_stderr(&format!(

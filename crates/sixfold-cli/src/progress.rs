@@ -1,6 +1,6 @@
 //! Progress bars on a terminal, progress as lines, and the handling of Ctrl-C.
 
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,8 +36,8 @@ fn print_step(what: &str) {
 pub(crate) struct Bar {
     bar: Option<ProgressBar>,
     prefix: String,
-    /// The last percentage that a launch told the first process.
-    told: Cell<u64>,
+    /// The last percentage that a launch told the first process, and what was measured.
+    told: RefCell<(u64, String)>,
 }
 
 impl Bar {
@@ -58,17 +58,22 @@ impl Bar {
         Self {
             bar,
             prefix: prefix.to_owned(),
-            told: Cell::new(u64::MAX),
+            told: RefCell::new((u64::MAX, String::new())),
         }
     }
 
-    /// Shows the finished part, from 0 to 1, and the current step.
+    /// Shows the finished part, from 0 to 1, and the current step, which may begin with what is measured, such as
+    /// `geodesics: `.
     pub(crate) fn set(&self, done: f64, what: &str) {
         let Some(bar) = &self.bar else {
             let percent = (100.0 * done) as u64;
             // The first process wakes up for each line, which would disturb the samples.
-            if Launch::current().is_some() && self.told.replace(percent) == percent {
-                return;
+            if Launch::current().is_some() {
+                let measured = what.split_once(": ").map_or("", |(measured, _)| measured);
+                let new = (percent, measured.to_owned());
+                if self.told.replace(new.clone()) == new {
+                    return;
+                }
             }
             return print_step(&format!("{percent} % {}{what}", self.prefix));
         };

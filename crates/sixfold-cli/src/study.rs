@@ -2,7 +2,6 @@
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 
 use sixfold_results::{BackendReport, Environment, Finding, Report, Run, Timer};
 use sixfold_study::{Operation, Progress, Settings, StudyError, StudyMesh};
@@ -10,7 +9,7 @@ use sixfold_study::{Operation, Progress, Settings, StudyError, StudyMesh};
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
-use crate::launches::{self, Launch, Plan};
+use crate::launches::{self, Launch, Launching, Part};
 use crate::left_out::left_out_notes;
 use crate::listed_folder::ListedFolder;
 use crate::load;
@@ -24,7 +23,6 @@ use sixfold_results::numbers::counted;
 
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let launch = Launch::current();
-    let effort = arguments.effort(1);
     let settings = Settings {
         backends: arguments.backends.clone(),
         externals: arguments.externals.clone(),
@@ -32,7 +30,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         operations: arguments.operations.selected(),
         force: arguments.force,
         warm_up: arguments.warmup,
-        effort: launch.map_or(effort, |launch| launch.effort(effort)),
+        effort: launches::effort(arguments.effort(1)),
         seed: launches::seed(arguments.seed),
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,
@@ -45,8 +43,9 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     if (several || arguments.report.is_some()) && launch.is_none() {
         return many::run(arguments, &settings);
     }
-    let found = match launch.and_then(|launch| launch.mesh.as_deref()) {
-        Some(name) => many::find_mesh(&arguments.meshes, name)?,
+    let found = match launch.and_then(|launch| launch.part.as_ref()) {
+        Some(Part::Mesh(name)) => many::find_mesh(&arguments.meshes, name)?,
+        Some(Part::Lab(lab)) => return many::run_lab(arguments, &settings, *lab),
         None => arguments.meshes.first().cloned(),
     };
     let mesh = found.as_deref();
@@ -88,20 +87,13 @@ fn run_single(
     let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
     print_before_measuring(&study_mesh, settings, &mut session.text);
-    let faces = study_mesh.polygons.face_count();
-    let count = launches::count(arguments.launching.launches, settings.effort, mesh, faces)?;
-    let bar = Bar::new();
-    let measured = measure(
-        &study_mesh,
-        settings,
-        count,
-        None,
-        &session.stop,
-        &|done, what| {
-            bar.set(done, what);
-        },
-    );
-    bar.clear();
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: mesh.into_iter().collect(),
+        part: None,
+        stop: &session.stop,
+    };
+    let measured = measure(&study_mesh, settings, &launching, &Bar::new());
     match measured {
         Ok(report) => {
             print(&report, &mut session.text);
@@ -120,30 +112,25 @@ fn run_single(
     }
 }
 
-/// Studies a mesh: in this process, or in several launches, which read it again. `name` is its name if the
-/// command has several meshes. `show` is called with the finished part, from 0 to 1, and the current step.
+/// Studies a mesh: in this process, or in several launches, which read it again.
 pub(crate) fn measure(
     study_mesh: &StudyMesh,
     settings: &Settings,
-    launches: u32,
-    name: Option<&str>,
-    stop: &AtomicBool,
-    show: &dyn Fn(f64, &str),
+    launching: &Launching<'_>,
+    bar: &Bar,
 ) -> Result<Report, Failure> {
-    let plan = Plan {
-        count: launches,
-        effort: settings.effort,
-        mesh: name,
-        stop,
-    };
-    plan.measure(Some(vec![study_mesh.report()]), show, || {
-        let mut show = |at: Progress<'_>| show(at.done, &at.step());
-        let report = sixfold_study::study(study_mesh, settings, stop, &mut show);
+    let plan = launching.plan(settings.effort, study_mesh.polygons.face_count())?;
+    let meshes = Some(vec![study_mesh.report()]);
+    let report = plan.measure(meshes, &|done, what| bar.set(done, what), || {
+        let mut show = |at: Progress<'_>| bar.show(at);
+        let report = sixfold_study::study(study_mesh, settings, launching.stop, &mut show);
         report.map_err(|error| match error {
             StudyError::NoneHolds { .. } => Failure::unsupported(error),
             error => Failure::usage(error),
         })
-    })
+    });
+    bar.clear();
+    report
 }
 
 /// Completes a study by the arguments that only the command knows.

@@ -1,32 +1,42 @@
 //! `sixfold why`: explains the time of queries by the memory that they read.
 
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 
+use sixfold::Relation;
 use sixfold_results::{Policy, WhyRow};
-use sixfold_study::{Effort, Settings, StudyError, StudyMesh, Timing, WhySettings};
+use sixfold_study::{Progress, Settings, StudyError, StudyMesh, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
+use crate::launches::{self, Launching};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
 use crate::text::TextOutput;
 use crate::why_text::{legend, memory_text, rows_text};
 
+/// The seed of the random order of the measurements.
+const SEED: u64 = 1;
+/// Number of faces of which the structures are built in about the time in which a launch measures the speed of memory.
+const MEMORY_AS_FACES: usize = 400_000;
+
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, Policy::Kept)?;
     let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
     let study_mesh = session.drawn(study_mesh);
-    let effort = (!arguments.counts_only).then(|| arguments.effort.effort());
-    if effort.is_some() {
+    let timing = (!arguments.counts_only).then(|| Timing {
+        effort: arguments.effort.effort(),
+        seed: launches::seed(SEED),
+    });
+    if timing.is_some() {
         warn_of_debug_build();
     }
     let settings = WhySettings {
         backends: arguments.backends.clone(),
         relations: arguments.relations.clone(),
+        timing,
         ..WhySettings::default()
     };
     let chosen = Settings {
@@ -34,26 +44,49 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         ..Settings::default()
     };
     print_before_measuring(&study_mesh, &chosen, &mut session.text);
-    let why = measure(&study_mesh, settings, effort, &session.stop, &Bar::new())?;
+    let launching = Launching {
+        wanted: arguments.launching.launches,
+        paths: mesh.into_iter().collect(),
+        part: None,
+        stop: &session.stop,
+    };
+    let why = measure(&study_mesh, &settings, &launching, &Bar::new())?;
     print(&why, !arguments.relations.is_empty(), &mut session.text);
     session.finish(with_command(why, arguments.triangulate).into())
 }
 
-/// Counts reads. If there is an `effort`, also measures times.
+/// Counts reads, and measures times if the settings say how: in this process, or in several launches, which count the
+/// same.
 pub(crate) fn measure(
     study_mesh: &StudyMesh,
-    mut settings: WhySettings,
-    effort: Option<Effort>,
-    stop: &AtomicBool,
+    settings: &WhySettings,
+    launching: &Launching<'_>,
     bar: &Bar,
 ) -> Result<sixfold_results::Why, Failure> {
-    settings.timing = effort.map(|effort| Timing { effort });
-    let why = sixfold_study::why(study_mesh, &settings, stop, &mut |at| bar.show(at));
+    let here = || {
+        let mut show = |at: Progress<'_>| bar.show(at);
+        let why = sixfold_study::why(study_mesh, settings, launching.stop, &mut show);
+        why.map_err(|error| match error {
+            StudyError::NoneHolds { .. } => Failure::unsupported(error),
+            error => Failure::usage(error),
+        })
+    };
+    let why = match settings.timing {
+        None => here(),
+        Some(Timing { effort, .. }) => {
+            // To count the reads of a relation takes about as long as to build the structures.
+            let relations = match settings.relations.len() {
+                0 => Relation::ALL.len(),
+                given => given,
+            };
+            let faces = study_mesh.polygons.face_count();
+            let plan = launching.plan(effort, (1 + relations) * faces + MEMORY_AS_FACES)?;
+            let meshes = Some(vec![study_mesh.report()]);
+            plan.measure(meshes, &|done, what| bar.set(done, what), here)
+        }
+    };
     bar.clear();
-    why.map_err(|error| match error {
-        StudyError::NoneHolds { .. } => Failure::unsupported(error),
-        error => Failure::usage(error),
-    })
+    why
 }
 
 /// Prints the answer, then the tables and their legend. There is a table for each relation; if there is

@@ -150,6 +150,10 @@ pub(crate) fn legend(why: &Why, detailed: bool) -> String {
                 format!("ns per element if each jump waits for the previous one; a jump is {jump}")
             }
         };
+        let measured = match why.run.settings.launches {
+            None => "median time of the sweep".to_owned(),
+            Some(launches) => format!("time of the sweep, the mean over {launches} launches,"),
+        };
         lines.extend([
             (
                 "floor",
@@ -161,7 +165,7 @@ pub(crate) fn legend(why: &Why, detailed: bool) -> String {
             ("waits", waits),
             (
                 "measured",
-                "median time of the sweep in ns per element; ~ if measured on a sample".to_owned(),
+                format!("{measured} in ns per element; ~ if measured on a sample"),
             ),
             (
                 "bound by",

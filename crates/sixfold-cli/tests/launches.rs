@@ -577,3 +577,153 @@ fn orders_growth_and_neighbours_are_measured_in_launches() {
         &["report", "orders.json", "growth.json", "--to", "page"],
     );
 }
+
+#[test]
+fn times_of_queries_are_measured_in_launches_and_explained_anew() {
+    let sixfold = with_grid();
+    let why = |more: &[&'static str]| {
+        let arguments = [
+            "why",
+            "grid.obj",
+            "--relations",
+            "vertex_faces,face_vertices",
+        ];
+        let backends = ["--backends", "half-edge,face-vertex"];
+        run_ok(&sixfold, &[&arguments[..], &backends, more].concat())
+    };
+    let run = why(&["--rounds", "2", "--launches", "3", "--json", "why.json"]);
+    let words = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("over 3 launches"), "{words}");
+    why(&["--counts-only", "--json", "counts.json"]);
+    let document = |name| document(&sixfold, name);
+    let (timed, counted) = (document("why.json"), document("counts.json"));
+    assert_eq!(timed["runs"][0]["settings"]["launches"], 3);
+    assert_eq!(counted["runs"][0]["settings"]["launches"], Value::Null);
+    let [finding, counts] = [&timed, &counted].map(|document| &document["findings"][0]);
+    assert_eq!(launches_of_samples(&timed), [0, 0, 1, 1, 2, 2]);
+    assert_eq!(
+        finding["control"]["operations"][0]["launches"]
+            .as_array()
+            .map(Vec::len),
+        Some(3)
+    );
+    let rows = finding["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 4);
+    for (row, counts) in rows.iter().zip(counts["rows"].as_array().expect("rows")) {
+        let times = &row["timed"];
+        assert_eq!(
+            times["launch_ns"].as_array().map(Vec::len),
+            Some(3),
+            "{row}"
+        );
+        let number = |name: &str| times[name].as_f64().expect("a number");
+        let ns = number("ns_per_element");
+        assert!(
+            number("ci_low_ns") <= ns && ns <= number("ci_high_ns"),
+            "{row}"
+        );
+        let memory = finding["memory"].as_array().expect("speeds");
+        assert!(memory.contains(&times["speed"]), "{row}");
+        let moved = row["moved_bytes"].as_f64().expect("a number");
+        let speed = times["speed"]["gb_per_s"].as_f64().expect("a number");
+        assert!(
+            (number("floor_ns") - moved / speed).abs() <= 1e-9 * moved,
+            "{row}"
+        );
+        let mut untimed = row.clone();
+        untimed["timed"] = Value::Null;
+        assert_eq!(&untimed, counts, "the counts are those of one launch");
+    }
+    // The document repeats that of one launch.
+    why(&["--rounds", "2", "--json", "one.json"]);
+    let all = [
+        "merge", "--repeat", "why.json", "one.json", "--json", "all.json",
+    ];
+    run_ok(&sixfold, &all);
+    let all = document("all.json");
+    let rows = all["findings"][0]["rows"].as_array().expect("rows");
+    let launches = rows
+        .iter()
+        .map(|row| row["timed"]["launch_ns"].as_array().map(Vec::len));
+    assert!(launches.eq([Some(4); 4]), "{rows:?}");
+    run_ok(&sixfold, &["report", "all.json", "--to", "page"]);
+    let refused = ["why", "grid.obj", "--counts-only", "--launches", "2"];
+    let run = sixfold.run(&refused);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(run.stderr.contains("--launches"), "{run:?}");
+}
+
+#[test]
+fn each_lab_of_a_report_has_its_launches() {
+    let sixfold = with_grid();
+    let options = [
+        "--operations",
+        "vertex_faces",
+        "--backends",
+        "face-vertex,half-edge",
+    ];
+    let effort = ["--rounds", "1", "--launches", "2", "--report", "out"];
+    let labs = ["--labs", "orders,why"];
+    let arguments = [&["study", "grid.obj"], &options[..], &effort, &labs].concat();
+    run_ok(&sixfold, &arguments);
+    let all = document(&sixfold, "out/results.json");
+    let [study, orders, why] = &all["findings"].as_array().expect("findings")[..] else {
+        panic!("{all}")
+    };
+    assert_eq!(counts(&study["results"]), [2; 2]);
+    assert_eq!(counts(&orders["results"]), [2; 8]);
+    assert_eq!(
+        (&orders["kind"], &why["kind"]),
+        (&"orders".into(), &"why".into())
+    );
+    let times = why["rows"]
+        .as_array()
+        .expect("rows")
+        .iter()
+        .map(|row| row["timed"].clone());
+    assert_eq!(counts(&times.collect::<Vec<_>>().into()), [2; 2]);
+    for run in all["runs"].as_array().expect("runs") {
+        assert_eq!(run["settings"]["launches"], 2, "{run}");
+        assert_eq!(run["settings"]["seed"], 1, "{run}");
+    }
+    // The mesh has the picture that the first process drew.
+    assert_eq!(all["meshes"].as_array().map(Vec::len), Some(1));
+    assert!(all["meshes"][0]["picture"].is_string());
+    let files = fs::read_dir(sixfold.folder()).expect("the folder").count();
+    assert_eq!(files, 2, "launches write no files");
+    // Finished studies are not measured again.
+    run_ok(&sixfold, &[&arguments[..], &["--resume"]].concat());
+    assert_eq!(
+        document(&sixfold, "out/results.json")["findings"],
+        all["findings"]
+    );
+}
+
+/// The meshes of growth are larger than that of the study.
+#[test]
+fn a_lab_has_as_many_launches_as_its_budget_holds() {
+    let sixfold = with_grid();
+    let options = [
+        "--operations",
+        "vertex_faces",
+        "--backends",
+        "face-vertex,half-edge",
+    ];
+    let effort = ["--budget", "2s", "--launches", "2", "--report", "out"];
+    let labs = ["--labs", "growth"];
+    let run = run_ok(
+        &sixfold,
+        &[&["study", "grid.obj"], &options[..], &effort, &labs].concat(),
+    );
+    let note = "note: growth does not have 2 launches: a budget of 1 s holds at most 1 launch";
+    assert!(run.stderr.contains(note), "{run:?}");
+    let all = document(&sixfold, "out/results.json");
+    let [study, growth] = &all["findings"].as_array().expect("findings")[..] else {
+        panic!("{all}")
+    };
+    assert_eq!(counts(&study["results"]), [2; 2]);
+    assert!(
+        growth["sizes"][0]["results"][0].get("launch_ns").is_none(),
+        "{growth}"
+    );
+}

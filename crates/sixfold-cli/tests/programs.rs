@@ -146,6 +146,22 @@ fn recorded_programs_run_again_on_every_structure() {
             assert_ne!(finding["workload"]["own_ns"], 0.0, "{finding}");
         }
     }
+    let trace = [
+        "pick",
+        "grid.obj",
+        "--triangulate",
+        "--trace",
+        "r/geodesics.trace",
+    ];
+    let twice = ["--rounds", "1", "--launches", "2", "--json", "t.json"];
+    let run = sixfold.run(&[&trace[..], &twice].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let results: Value = serde_json::from_str(&text(&sixfold, "t.json")).expect("JSON");
+    assert!(
+        launches(&results["findings"][0])
+            .iter()
+            .all(|&count| count == 2)
+    );
 
     let run = sixfold.run(&[
         "pick",
@@ -343,6 +359,201 @@ fn an_interrupt_ends_an_endless_program_and_keeps_the_others() {
     command.args(["grid.obj", "--programs", "sound,endless", "--rounds", "2"]);
     command.args(["--backends", "half-edge", "--json", "r.json"]);
     let run = interrupted(command, "INT", "endless: ");
+    assert!(
+        run.stderr.contains("did not end after the interrupt"),
+        "{run:?}"
+    );
+    let results: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    let findings = results["findings"].as_array().expect("a list");
+    assert_eq!(findings.len(), 1, "{findings:?}");
+    assert_eq!(findings[0]["workload"]["name"], "sound");
+}
+
+/// Returns the number of launches that measured each backend of a ranking.
+fn launches(finding: &Value) -> Vec<usize> {
+    let ranking = finding["ranking"].as_array().expect("a list").iter();
+    let times = ranking.map(|row| row["launch_ns"].as_array().map_or(1, Vec::len));
+    times.collect()
+}
+
+#[test]
+fn programs_are_measured_in_launches() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    sixfold.grid("other.obj", 9);
+    let measure = |file, more: &[&'static str]| {
+        let programs = [
+            "grid.obj",
+            "--programs",
+            "geodesics,regions",
+            "--rounds",
+            "2",
+        ];
+        let options = ["--backends", "half-edge,corner-table", "--json", file];
+        let run = sixfold.run_programs(&[&programs[..], &options, more].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        for program in ["geodesics", "regions"] {
+            let answer = format!("Program:  {program}\n");
+            assert_eq!(run.stdout.matches(&answer).count(), 1, "{run:?}");
+        }
+        let results: Value = serde_json::from_str(&text(&sixfold, file)).expect("JSON");
+        assert_eq!(results["runs"].as_array().map(Vec::len), Some(1));
+        results
+    };
+    let results = measure("r.json", &["--launches", "3"]);
+    assert_eq!(results["runs"][0]["settings"]["launches"], 3);
+    let findings = results["findings"].as_array().expect("a list");
+    let names = findings.iter().map(|finding| &finding["workload"]["name"]);
+    assert_eq!(names.collect::<Vec<_>>(), ["geodesics", "regions"]);
+    for finding in findings {
+        assert_eq!(launches(finding), [3; 2], "{finding}");
+        assert_eq!(finding["control_ratios"].as_array().map(Vec::len), Some(3));
+        for row in finding["ranking"].as_array().expect("a list") {
+            assert!(
+                row["ns_ci_low"].as_f64() < row["ns_ci_high"].as_f64(),
+                "{row}"
+            );
+            assert_eq!(row["samples"], 6, "{row}");
+        }
+        assert!(
+            !finding["program"]["asked"]
+                .as_array()
+                .expect("recorded")
+                .is_empty()
+        );
+    }
+    // Each program has its times of all documents and on all meshes.
+    measure("again.json", &["--seed", "9"]);
+    let all = [
+        "merge",
+        "--repeat",
+        "r.json",
+        "again.json",
+        "--json",
+        "all.json",
+    ];
+    let run = sixfold.run(&all);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let all: Value = serde_json::from_str(&text(&sixfold, "all.json")).expect("JSON");
+    let all = all["findings"].as_array().expect("a list");
+    assert!(all.len() == 2 && all.iter().all(|finding| launches(finding) == [4; 2]));
+    let two = measure("two.json", &["other.obj", "--launches", "2"]);
+    for on_mesh in two["findings"][1]["by_mesh"]
+        .as_array()
+        .expect("two meshes")
+    {
+        assert_eq!(launches(on_mesh), [2; 2], "{on_mesh}");
+    }
+    for (option, value) in [("--isolate", None), ("--record", Some("folder"))] {
+        let arguments = ["grid.obj", "--launches", "2", option]
+            .into_iter()
+            .chain(value);
+        let run = sixfold.run_programs(&arguments.collect::<Vec<_>>());
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.contains("cannot be used with"), "{run:?}");
+    }
+}
+
+#[test]
+fn the_lines_that_a_program_prints_do_not_disturb_its_launches() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let (_, findings) = run_faulty(&sixfold, "chatting", &["--launches", "2"], 0);
+    assert_eq!(launches(&findings[0]), [2; 4]);
+}
+
+/// A launch of a program that does not end is the last one, so that the others do not wait as long.
+#[test]
+#[cfg(target_os = "linux")]
+fn the_launch_of_an_endless_program_is_the_last_one() {
+    let three = ["--launches", "3", "--time-limit", "5s"];
+    for (programs, launch, kept) in [
+        ("sound,endless", 1, &[("sound", 1)][..]),
+        // The first launch is whole.
+        (
+            "sound,endless-once",
+            2,
+            &[("sound", 2), ("endless-once", 1)],
+        ),
+    ] {
+        let sixfold = Sixfold::new();
+        sixfold.grid("grid.obj", 12);
+        let (stderr, findings) = run_faulty(&sixfold, programs, &three, 4);
+        let message = format!(
+            "error: launch {launch} of 3 is the last one: a program did not end within 5.0 s, at: {}: ",
+            kept.last()
+                .map_or("endless", |(name, _)| if *name == "sound" {
+                    "endless"
+                } else {
+                    name
+                })
+        );
+        assert!(stderr.contains(&message), "{stderr}");
+        assert_eq!(stderr.matches("did not end").count(), 1, "{stderr}");
+        let found = findings.iter().map(|finding| {
+            let name = finding["workload"]["name"].as_str().expect("a name");
+            assert_eq!(finding["interrupted"], false);
+            let launches = launches(finding);
+            assert_eq!(launches, [launches[0]; 4]);
+            (name, launches[0])
+        });
+        assert_eq!(found.collect::<Vec<_>>(), kept);
+        assert!(
+            text(&sixfold, "r.json").contains(&message),
+            "the document has it"
+        );
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_launch_in_which_a_program_crashes_is_left_out() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let three = ["--launches", "3"];
+    let (stderr, findings) = run_faulty(&sixfold, "sound,crashing-once", &three, 1);
+    let message = "note: launch 2 of 3 is left out: it ended with signal: 6";
+    assert!(stderr.contains(message), "{stderr}");
+    assert_eq!(findings.len(), 2);
+    assert!(
+        findings.iter().all(|finding| launches(finding) == [2; 4]),
+        "{findings:?}"
+    );
+    let mut command = sixfold.example("faulty_programs");
+    command.args([
+        "grid.obj",
+        "--programs",
+        "crashing",
+        "--rounds",
+        "1",
+        "--launches",
+        "2",
+    ]);
+    let run = crate::run::Run::from_output(command.output().expect("it runs"));
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(
+        run.stderr
+            .contains("error: no launch has a result: it ended with signal: 6"),
+        "{run:?}"
+    );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_interrupt_ends_the_launch_of_an_endless_program() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let mut command = sixfold.example("faulty_programs");
+    command.args(["grid.obj", "--programs", "sound,endless", "--rounds", "2"]);
+    command.args([
+        "--backends",
+        "half-edge",
+        "--launches",
+        "2",
+        "--json",
+        "r.json",
+    ]);
+    let run = interrupted(command, "INT", "launch 1 of 2: endless: ");
     assert!(
         run.stderr.contains("did not end after the interrupt"),
         "{run:?}"

@@ -59,7 +59,7 @@ fn written_fields() -> BTreeSet<String> {
         ],
         &["orders", "grid.obj", "--rounds", "2"],
         &["growth", "--to", "2000", "--steps", "3", "--rounds", "2"],
-        &["why", "grid.obj", "--rounds", "2"],
+        &["why", "grid.obj", "--rounds", "2", "--launches", "2"],
         &["memory", "grid.obj"],
         &["neighbours", "grid.obj", "--rounds", "2"],
         &[

@@ -9,6 +9,7 @@ use crate::labs::neighbours::pool_neighbours;
 use crate::labs::orders::pool_orders;
 use crate::labs::pick::pool_picks;
 use crate::labs::study::conclude;
+use crate::labs::why::pool_why;
 
 /// The environment variable that tells a process of the command `sixfold` that it is a launch. External programs,
 /// which may be such commands themselves, do not get it.
@@ -17,10 +18,9 @@ pub const LAUNCH_VARIABLE: &str = "SIXFOLD_LAUNCH";
 /// Pools documents of the same work, one for each launch, as one document. Documents that were pooled before
 /// add all of their launches.
 ///
-/// Studies of the same mesh become one study, and picks for the same workload one pick; the same holds for orders of
-/// a mesh and growth of a shape, see
-/// [`pool_rows`](sixfold_results::launches::pool_rows()). A mesh that failed in some launches has a study
-/// of the others.
+/// Studies of the same mesh become one study, and picks for the same workload or program one pick; the same holds for
+/// the other labs that measure times, see [`pool_rows`](sixfold_results::launches::pool_rows()). A mesh that failed in
+/// some launches has a study of the others.
 ///
 /// # Errors
 ///
@@ -58,6 +58,7 @@ fn pool_group(group: Vec<Finding>) -> Option<Finding> {
         Finding::Orders(_) => Some(pool_orders(all(group)).into()),
         Finding::Growth(_) => Some(pool_growth(all(group)).into()),
         Finding::Neighbours(_) => Some(pool_neighbours(all(group)).into()),
+        Finding::Why(_) => Some(pool_why(all(group)).into()),
         _ => group.into_iter().next(),
     }
 }

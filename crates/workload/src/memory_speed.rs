@@ -100,6 +100,16 @@ impl MemorySpeed {
         })
     }
 
+    /// Returns the speeds of memory from those of buffers, such as medians over several measurements. The speeds are
+    /// ordered by the size of the buffer; `None` without any.
+    pub fn from_speeds(speeds: Vec<BufferSpeed>) -> Option<Self> {
+        let largest = speeds.last()?.bytes;
+        Some(Self {
+            left_out_from: SIZES.into_iter().find(|&bytes| bytes > largest),
+            speeds,
+        })
+    }
+
     /// Returns the size in bytes of the smallest buffer that was left out because there was too
     /// little time; `None` if all buffers were measured.
     pub const fn left_out_from(&self) -> Option<usize> {

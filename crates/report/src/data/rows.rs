@@ -172,7 +172,7 @@ pub(crate) fn roofline(why: &Why) -> String {
     let buffers = why.memory.as_deref().unwrap_or_default();
     let [smallest, largest] = [buffers.first(), buffers.last()];
     let rows = why.rows.iter().filter_map(|row| {
-        let timed = row.timed?;
+        let timed = row.timed.as_ref()?;
         (row.reads.moved_bytes > 0.0).then(|| RooflineRow {
             mesh: &why.mesh.name,
             relation: row.reads.relation.to_string(),

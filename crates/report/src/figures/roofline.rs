@@ -13,7 +13,7 @@ use crate::colours::{BACKGROUND, FAINT_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table, byte_tick, duration_tick};
 
-type TimedRow<'a> = (&'a WhyRow, Timed);
+type TimedRow<'a> = (&'a WhyRow, &'a Timed);
 
 /// Size of a panel, and the places of its axes.
 const SIZE: [f64; 2] = [420.0, 310.0];
@@ -24,7 +24,10 @@ const UPWARDS: [f64; 2] = [266.0, 44.0];
 /// nothing was measured.
 pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let buffers = why.memory.as_ref()?;
-    let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
+    let rows = why
+        .rows
+        .iter()
+        .filter_map(|row| Some((row, row.timed.as_ref()?)));
     let rows: Vec<TimedRow<'_>> = rows
         .filter(|(row, _)| row.reads.moved_bytes > 0.0)
         .collect();

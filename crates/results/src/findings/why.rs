@@ -7,9 +7,11 @@ use crate::figure::{Counted, Figure, Status, samples_of};
 use crate::finding::LabFinding;
 use crate::read::ReadError;
 use crate::rows::{
-    Agreement, BackendReport, MeshReport, ResultRow, Samples, bytes_of, check_samples,
+    Agreement, BackendReport, Control, MeshReport, ResultRow, Samples, bytes_of, check_control,
+    check_samples,
 };
 use crate::run::Run;
+use crate::timer::Timer;
 
 /// The memory that queries read on each structure, compared with the times of the queries.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -29,6 +31,10 @@ pub struct Why {
     pub memory: Option<Vec<BufferSpeed>>,
     /// The results, sorted by relation, then in the order of `backends`.
     pub rows: Vec<WhyRow>,
+    /// The comparison of two measurements of one backend, which shows the noise. `None` if no backend was measured
+    /// twice.
+    #[serde(default)]
+    pub control: Option<Control>,
     /// The times of all samples; empty if no times were measured.
     pub samples: Vec<Samples>,
     /// Sentences about the results; empty if the counting was stopped.
@@ -37,6 +43,9 @@ pub struct Why {
     pub warnings: Vec<String>,
     /// True if the measurement was stopped early. Some rows or times may then be missing.
     pub interrupted: bool,
+    /// The resolution and the cost of reading the clock; `None` if no times were measured.
+    #[serde(default)]
+    pub timer: Option<Timer>,
 }
 
 /// The model of the processor cache with which reads are counted.
@@ -72,10 +81,19 @@ pub struct WhyRow {
 }
 
 /// The time of querying a relation at all elements (a sweep), and the explanation of this time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timed {
-    /// The median time per element, in nanoseconds.
+    /// The median time per element, in nanoseconds; with several launches, the time over the launches.
     pub ns_per_element: f64,
+    /// With several launches, `ns_per_element` in each of them; `None` in a launch without a time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub launch_ns: Vec<Option<f64>>,
+    /// Lower end of the 95 % interval of `ns_per_element`; `None` with fewer than two launches and three rounds.
+    #[serde(default)]
+    pub ci_low_ns: Option<f64>,
+    /// Upper end of the 95 % interval of `ns_per_element`.
+    #[serde(default)]
+    pub ci_high_ns: Option<f64>,
     /// True if only a sample of the elements was timed.
     pub sampled: bool,
     /// The comparison of the checksum with the checksums of other backends.
@@ -107,37 +125,62 @@ impl LabFinding for Why {
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let figure = |row: &'s WhyRow| {
             let operation = row.reads.relation.name();
-            let status = match row.timed.map(|timed| timed.sampled) {
+            let status = match row.timed.as_ref().map(|timed| timed.sampled) {
                 None => Status::Counted,
                 Some(true) => Status::Sampled,
                 Some(false) => Status::Measured,
             };
-            let elements = row.reads.elements;
-            let samples = samples_of(&self.samples, "", operation, &row.backend);
-            let each = row.timed.map(|timed| timed.ns_per_element);
-            let times = ResultRow {
-                median_ns: each.map(|ns| ns * elements as f64),
-                ns_per_element: each,
-                elements: Some(elements),
-                sampled: status == Status::Sampled,
-                agreement: row
-                    .timed
-                    .map_or(Agreement::Unchecked, |timed| timed.agreement),
-                samples: samples.map_or(0, |samples| samples.rounds.len()),
-                ..ResultRow::new(&row.backend, operation, &row.per)
-            };
             let bytes = bytes_of(&self.backends, &row.backend);
             Figure {
-                samples,
+                samples: samples_of(&self.samples, "", operation, &row.backend),
                 counted: Counted::from(&row.reads),
-                ..Figure::new(Some(&self.mesh), bytes, status, times)
+                ..Figure::new(Some(&self.mesh), bytes, status, self.result(row))
             }
         };
         self.rows.iter().map(figure).collect()
     }
 
     fn check(&self) -> Result<(), ReadError> {
-        check_samples(&self.samples)
+        check_samples(&self.samples)?;
+        check_control(self.control.as_ref())
+    }
+}
+
+impl Why {
+    /// Returns the measured times as rows, for [`pool_rows`](crate::launches::pool_rows()).
+    pub fn results(&self) -> Vec<ResultRow> {
+        let timed = self.rows.iter().filter(|row| row.timed.is_some());
+        timed.map(|row| self.result(row)).collect()
+    }
+
+    /// Returns the time of a row, which is empty if no time was measured.
+    fn result(&self, row: &WhyRow) -> ResultRow {
+        let (operation, elements) = (row.reads.relation.name(), row.reads.elements);
+        let untimed = ResultRow {
+            elements: Some(elements),
+            ..ResultRow::new(&row.backend, operation, &row.per)
+        };
+        let Some(timed) = &row.timed else {
+            return untimed;
+        };
+        let of_run = |each: f64| each * elements as f64;
+        let samples = samples_of(&self.samples, "", operation, &row.backend);
+        let count = samples.map_or(0, |samples| samples.rounds.len());
+        let faults = samples.and_then(|samples| samples.faults.as_ref());
+        let launches = timed.launch_ns.iter();
+        ResultRow {
+            median_ns: Some(of_run(timed.ns_per_element)),
+            ns_per_element: Some(timed.ns_per_element),
+            launch_ns: launches.map(|each| each.map(of_run)).collect(),
+            ci_low_ns: timed.ci_low_ns.map(of_run),
+            ci_high_ns: timed.ci_high_ns.map(of_run),
+            sampled: timed.sampled,
+            agreement: timed.agreement,
+            samples: count,
+            warm_up_only: count == 0,
+            faults: faults.and_then(|faults| faults.iter().copied().max()),
+            ..untimed
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use clap::Parser;
 use sixfold_results::Policy;
 
 use super::picking::bytes;
-use super::{EffortArgs, ReadFiles, ResultFiles, duration, seed};
+use super::{EffortArgs, LaunchArgs, ReadFiles, ResultFiles, duration, seed};
 
 /// Measures programs on every mesh data structure, and ranks the structures.
 ///
@@ -34,6 +34,8 @@ pub(crate) struct Programs {
     pub(crate) max_memory: Option<u64>,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     /// Seed of the random order of the measurements
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -44,8 +46,9 @@ pub(crate) struct Programs {
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Run each structure in a process of its own: if the program crashes, does not end or uses too
-    /// much memory on one structure, the others are still measured
-    #[arg(long, conflicts_with = "record")]
+    /// much memory on one structure, the others are still measured. There is one launch, because the
+    /// structure would fail again in each launch
+    #[arg(long, conflicts_with_all = ["record", "launches"])]
     pub(crate) isolate: bool,
     /// Time limit for each sample [default with --isolate: a quarter of the budget; otherwise the
     /// command ends after three times the budget and 30 s]
@@ -60,7 +63,7 @@ pub(crate) struct Programs {
     pub(crate) child: Option<String>,
     /// Write what each program asks to DIR/PROGRAM.toml, a workload for `sixfold pick --workload`;
     /// measures only the time of the program's own work
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["json", "csv"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["json", "csv", "launches"])]
     pub(crate) record: Option<PathBuf>,
     /// With --record, also write all calls to DIR/PROGRAM.trace, for `sixfold pick --trace`
     #[arg(long, requires = "record")]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::Relation;
 
-use super::{EffortArgs, ReadFiles, ResultFiles, backend, relation};
+use super::{EffortArgs, LaunchArgs, ReadFiles, ResultFiles, backend, relation};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
@@ -17,17 +17,18 @@ counts assume that each table begins at the start of a cache line of 64 bytes. I
 relation scan all faces, or read more than 256 table rows per query on average, only 16 evenly
 spaced elements are queried. In the output, the sign ~ marks counts from only 16 elements.
 
-Times are measured as in `sixfold study`. A sweep queries all elements once, in order. The speed of
-memory is measured first, in buffers of growing size. The time of a sweep is compared with the speed
+Times are measured as in `sixfold study`, in several launches (fresh processes); the counts are the
+same in each launch. A sweep queries all elements once, in order. Each launch first measures the
+speed of memory, in buffers of growing size; the medians over the launches are shown. The time of a sweep is compared with the speed
 of the largest buffer that is not larger than the memory that the sweep touches. With --relations,
 the command also shows the reads of each table.
 
 Relations: vertex_vertices, vertex_edges, vertex_faces, edge_vertices, edge_edges, edge_faces,
 face_vertices, face_edges, face_faces.
 
-Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage or
-unusable input; 3 none of the selected backends can hold the mesh; 4 interrupted, finished results
-are kept.";
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), or a launch died;
+2 wrong usage or unusable input; 3 none of the selected backends can hold the mesh; 4 interrupted,
+finished results are kept.";
 
 /// Explain the time of queries by the memory that the queries read.
 ///
@@ -35,7 +36,11 @@ are kept.";
 /// Shows how many bytes a pass over all elements moves from memory. Shows the measured time of each
 /// relation, and the factor that limits the speed.
 #[derive(Debug, Args)]
-#[command(after_help = WHY_EXAMPLES, verbatim_doc_comment)]
+#[command(
+    after_help = WHY_EXAMPLES,
+    verbatim_doc_comment,
+    mut_arg("launches", |arg| arg.help("Measure in N fresh processes [default: by the budget, 3 for 20s]")),
+)]
 pub(crate) struct Why {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH")]
@@ -50,10 +55,12 @@ pub(crate) struct Why {
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Count the reads only, and measure no times
-    #[arg(long, conflicts_with_all = ["budget", "rounds"])]
+    #[arg(long, conflicts_with_all = ["budget", "rounds", "launches"])]
     pub(crate) counts_only: bool,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,
+    #[command(flatten)]
+    pub(crate) launching: LaunchArgs,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
     #[command(flatten)]

@@ -213,7 +213,12 @@ fn add_saved(
     let Finding::Study(study) = saved else {
         return Ok(false);
     };
-    if study.run.settings != *wanted {
+    // Not every study need have as many launches.
+    let wanted = RunSettings {
+        launches: study.run.settings.launches,
+        ..wanted.clone()
+    };
+    if study.run.settings != wanted {
         return Err(Failure::usage(format!(
             "{} was made with other settings: name another folder, or use the same settings",
             file.display()

@@ -1,21 +1,24 @@
 //! The labs in the report of one mesh: orders, growth and why.
 
+use std::num::NonZeroU32;
+use std::path::Path;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold::UnknownName;
 use sixfold_results::{Finding, Results};
-use sixfold_study::{GrowthSettings, Operation, Settings, StudyMesh, WhySettings};
+use sixfold_study::{GrowthSettings, Operation, Settings, StudyMesh, Timing, WhySettings};
 
 use super::folder::Folder;
 use crate::failure::Failure;
+use crate::launches::{self, Launching, Part};
 use crate::measure::with_command;
 use crate::progress::Bar;
 use crate::text::{TextOutput, print_notice, sanitize, take_notices};
 use crate::{growth, orders, why};
 
 sixfold_core::named! {
-    pub(super) enum Lab: "lab" {
+    pub(crate) enum Lab: "lab" {
         /// The mesh in several orders, as in `sixfold orders`.
         Orders = "orders",
         /// A shape in several sizes, as in `sixfold growth`.
@@ -61,24 +64,38 @@ pub(super) fn selected_labs(
 /// Measures labs. The fields are the shared input of all labs.
 pub(super) struct LabRunner<'a> {
     pub(super) study_mesh: &'a StudyMesh,
+    /// The settings of the command. The effort is that of all launches of a lab.
     pub(super) settings: &'a Settings,
-    pub(super) triangulate: bool,
+    /// The number of launches of each lab; `None` for as many as its time holds.
+    pub(super) launches: Option<NonZeroU32>,
+    /// The file of the mesh.
+    pub(super) path: Option<&'a Path>,
+    pub(super) stop: &'a AtomicBool,
+}
+
+/// Where the findings of labs are kept.
+pub(super) struct Kept<'a> {
     pub(super) folder: &'a Folder,
     /// True if an earlier run finished the study. The folder then has results of the same mesh and
     /// settings.
     pub(super) resumed: bool,
-    pub(super) stop: &'a AtomicBool,
+    pub(super) triangulate: bool,
 }
 
 impl LabRunner<'_> {
     /// Measures the labs that are not in the folder, and adds their findings. A lab that fails is
     /// reported and left out. A lab that cannot be saved is still added; the first error of saving
     /// is returned at the end.
-    pub(super) fn run(&self, selected: &[Lab], results: &mut Results) -> Result<(), Failure> {
+    pub(super) fn run(
+        &self,
+        selected: &[Lab],
+        kept: &Kept<'_>,
+        results: &mut Results,
+    ) -> Result<(), Failure> {
         let mut written = Ok(());
         for (i, &lab) in selected.iter().enumerate() {
-            let saved = match self.resumed {
-                true => self.folder.load_lab(lab.name()),
+            let saved = match kept.resumed {
+                true => kept.folder.load_lab(lab.name()),
                 false => None,
             };
             if let Some(saved) = saved {
@@ -92,12 +109,13 @@ impl LabRunner<'_> {
             if self.stop.load(Ordering::Relaxed) {
                 continue;
             }
-            match self.measure(lab, &format!("{} of {}: ", i + 2, selected.len() + 1)) {
+            let bar = Bar::after(&format!("{} of {}: ", i + 2, selected.len() + 1));
+            match self.measure(lab, &bar) {
                 Ok(Some(finding)) => {
-                    let mut document = Results::from(with_command(finding, self.triangulate));
+                    let mut document = Results::from(with_command(finding, kept.triangulate));
                     document.notices = take_notices();
                     if !self.stop.load(Ordering::Relaxed) {
-                        written = written.and(self.folder.save_lab(lab.name(), &document));
+                        written = written.and(kept.folder.save_lab(lab.name(), &document));
                     }
                     results.add_notices(document.notices);
                     document
@@ -119,8 +137,9 @@ impl LabRunner<'_> {
         written
     }
 
-    /// Measures a lab. `position` is shown before the progress.
-    fn measure(&self, lab: Lab, position: &str) -> Result<Option<Finding>, Failure> {
+    /// Measures a lab, in this process or in several launches. Returns `None` if none of the operations belongs to
+    /// the lab.
+    pub(super) fn measure(&self, lab: Lab, bar: &Bar) -> Result<Option<Finding>, Failure> {
         let Settings {
             backends,
             operations,
@@ -130,7 +149,7 @@ impl LabRunner<'_> {
             caches,
             ..
         } = self.settings;
-        let settings = || Settings {
+        let whole = Settings {
             backends: backends.clone(),
             operations: operations.clone(),
             effort: *effort,
@@ -139,42 +158,41 @@ impl LabRunner<'_> {
             caches: *caches,
             ..Settings::default()
         };
+        let launching = Launching {
+            wanted: self.launches,
+            paths: self.path.into_iter().collect(),
+            part: Some(Part::Lab(lab)),
+            stop: self.stop,
+        };
+        let effort = launches::effort(*effort);
         Ok(match lab {
             Lab::Orders => {
-                let orders = orders::measure(
-                    self.study_mesh,
-                    &settings(),
-                    self.stop,
-                    &Bar::after(position),
-                )?;
+                let settings = Settings { effort, ..whole };
+                let orders = orders::measure(self.study_mesh, &settings, &launching, bar)?;
                 Some(orders.into())
             }
             Lab::Growth => {
-                let settings = GrowthSettings::from_study(settings());
-                let growth = growth::measure(&settings, self.stop, &Bar::after(position))?;
-                Some(growth.into())
+                // All launches have the same sizes, which follow from the time of the whole lab.
+                let mut settings = GrowthSettings::from_study(whole);
+                settings.study.effort = effort;
+                Some(growth::measure(&settings, &launching, bar)?.into())
             }
             Lab::Why => {
                 let relations = operations.iter().filter_map(|operation| match operation {
                     Operation::Relation(relation) => Some(*relation),
                     _ => None,
                 });
+                let seed = *seed;
                 let settings = WhySettings {
                     backends: backends.clone(),
                     relations: relations.collect(),
+                    timing: Some(Timing { effort, seed }),
                     ..WhySettings::default()
                 };
                 if settings.relations.is_empty() && !operations.is_empty() {
                     return Ok(None);
                 }
-                let why = why::measure(
-                    self.study_mesh,
-                    settings,
-                    Some(*effort),
-                    self.stop,
-                    &Bar::after(position),
-                )?;
-                Some(why.into())
+                Some(why::measure(self.study_mesh, &settings, &launching, bar)?.into())
             }
         })
     }

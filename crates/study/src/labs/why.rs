@@ -11,7 +11,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use sixfold::Relation;
-use sixfold_results::{BackendReport, Bound, Model, Reads, Report, Timed, Why, WhyRow};
+use sixfold_results::launches::{LaunchRows, pool_rows};
+use sixfold_results::statistics::median;
+use sixfold_results::{
+    Agreement, BackendReport, Bound, BufferSpeed, Model, Reads, ResultRow, Samples, Timed, Why,
+    WhyRow,
+};
 use sixfold_workload::{
     Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MachineClock, MemorySpeed,
     ReadsObserver,
@@ -22,8 +27,11 @@ use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::engine::run::start_run;
+use crate::engine::warnings::warnings;
 use crate::inspect::{StudyMesh, unbuilt};
+use crate::labs::study::sentences::fault;
 use crate::labs::study::{Settings, StudyError, study_on};
+use crate::launches::{pool_runs, pool_timers};
 use crate::refusal::BuildInput;
 use sixfold_results::numbers::bytes;
 
@@ -52,8 +60,11 @@ pub struct WhySettings {
 /// The settings of the time measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// How much is measured. Up to half of a time limit is for the measurement of the memory.
+    /// How much is measured. A time limit includes the counting, which takes as long as it takes: at least half of the
+    /// limit is for the times. Up to half of the rest is for the measurement of the memory.
     pub effort: Effort,
+    /// Seed of the random numbers that choose the order of the measurements, and the elements of samples.
+    pub seed: u64,
 }
 
 /// The model that this version of Sixfold uses.
@@ -105,47 +116,131 @@ pub(crate) fn why_on(
         return Err(StudyError::NoFaces);
     }
     // Counting has no time limit.
-    let no_time = Effort::Budget(Duration::ZERO);
-    study_settings.effort = settings.timing.map_or(no_time, |timing| timing.effort);
+    study_settings.effort = Effort::Budget(Duration::ZERO);
+    if let Some(Timing { effort, seed }) = settings.timing {
+        (study_settings.effort, study_settings.seed) = (effort, seed);
+    }
+    let budget = Budget::start(study_settings.effort, machine.clock());
     let mut run = start_run(study_settings.run_settings());
     let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
     // The sort is stable: the rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
-    let (mut samples, mut warnings) = (Vec::new(), Vec::new());
-    let budget = Budget::start(study_settings.effort, machine.clock());
-    let memory = settings.timing.and_then(|Timing { effort }| {
+    // The times get at least half of the time.
+    let effort = match (budget.left(), study_settings.effort.part(0.5)) {
+        (Effort::Budget(left), Effort::Budget(half)) => Effort::Budget(left.max(half)),
+        (rounds, _) => rounds,
+    };
+    let budget = Budget::start(effort, machine.clock());
+    let (mut samples, mut control, mut timer) = (Vec::new(), None, None);
+    let memory = settings.timing.and_then(|_| {
         progress(MEASURING_MEMORY);
-        machine.memory_speed(effort.budget().map_or(Duration::MAX, |all| all / 2), stop)
+        let half = effort.part(0.5).budget();
+        machine.memory_speed(half.unwrap_or(Duration::MAX), stop)
     });
     if let Some(memory) = &memory
         && !stop.load(Ordering::Relaxed)
     {
         study_settings.effort = budget.left();
         let report = study_on(machine, study_mesh, &study_settings, stop, progress)?;
-        for row in &mut rows {
-            row.timed = timed(row, &report, memory);
-        }
+        compare(&mut rows, &report.results, memory);
         run.environment = report.run.environment;
-        (samples, warnings) = (report.samples, report.warnings);
-        warnings.extend(left_out_buffers(memory));
+        (samples, control, timer) = (report.samples, report.control, report.timer);
     }
-    let holding = backends.iter().filter(|backend| backend.holds).count();
-    let sentences = match rows.len() == holding * relations.len() {
-        true => sentences::sentences(&rows),
-        false => Vec::new(),
-    };
-    Ok(Why {
+    let mut why = Why {
         run,
         mesh: study_mesh.report(),
         backends,
-        sentences,
+        sentences: Vec::new(),
         model: CURRENT_MODEL,
         memory: memory.map(|memory| memory.speeds().to_vec()),
         rows,
+        control,
         samples,
-        warnings,
+        warnings: Vec::new(),
         interrupted: stop.load(Ordering::Relaxed),
-    })
+        timer,
+    };
+    conclude(&mut why);
+    Ok(why)
+}
+
+/// Adds the sentences and the warnings.
+fn conclude(why: &mut Why) {
+    let holding = why.backends.iter().filter(|backend| backend.holds).count();
+    // An interruption may end the counting early.
+    why.sentences = match why.rows.len() == holding * why.run.settings.operations.len() {
+        true => sentences::sentences(&why.rows),
+        false => Vec::new(),
+    };
+    let results = why.results();
+    let rows: Vec<&ResultRow> = results.iter().collect();
+    let samples: Vec<&Samples> = why.samples.iter().collect();
+    let wrong = results.iter();
+    let wrong = wrong.filter(|row| row.agreement == Agreement::Mismatch);
+    let mut all: Vec<String> = wrong.map(fault).collect();
+    if let Some(timer) = &why.timer {
+        let control = why.control.as_ref();
+        all.extend(warnings(&why.run, timer, &rows, &samples, control));
+        let speeds = why.memory.clone().and_then(MemorySpeed::from_speeds);
+        all.extend(speeds.as_ref().and_then(left_out_buffers));
+    }
+    why.warnings = all;
+}
+
+/// Pools what several launches measured on one mesh. Counts are the same in all launches. The speed of a buffer is the
+/// median over the launches.
+pub(crate) fn pool_why(mut launches: Vec<Why>) -> Why {
+    if launches.len() == 1 {
+        return launches.remove(0);
+    }
+    let results: Vec<Vec<ResultRow>> = launches.iter().map(Why::results).collect();
+    let rows = launches.iter().zip(&results);
+    let rows = rows.map(|(launch, results)| LaunchRows {
+        results,
+        refusals: &[],
+        samples: &launch.samples,
+        control: launch.control.as_ref(),
+    });
+    let rows: Vec<LaunchRows<'_>> = rows.collect();
+    let pooled = pool_rows(&rows, |row| row.operation.clone());
+    let memory = MemorySpeed::from_speeds(pool_speeds(&launches));
+    // An interrupted launch may lack counts.
+    let whole = launches.iter().max_by_key(|launch| launch.rows.len());
+    let whole = whole.unwrap_or(&launches[0]);
+    let mut why = Why {
+        run: pool_runs(launches.iter().map(|launch| &launch.run)),
+        timer: pool_timers(launches.iter().filter_map(|launch| launch.timer)),
+        interrupted: launches.iter().any(|launch| launch.interrupted),
+        memory: memory.as_ref().map(|memory| memory.speeds().to_vec()),
+        control: pooled.control,
+        samples: pooled.samples,
+        ..whole.clone()
+    };
+    if let Some(memory) = &memory {
+        compare(&mut why.rows, &pooled.results, memory);
+    }
+    conclude(&mut why);
+    why
+}
+
+/// Returns the median speed of each buffer over the launches that measured it, starting with the smallest buffer.
+fn pool_speeds(launches: &[Why]) -> Vec<BufferSpeed> {
+    let speeds = || launches.iter().filter_map(|launch| launch.memory.as_ref());
+    let mut sizes: Vec<usize> = speeds().flatten().map(|speed| speed.bytes).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let typical = |bytes: usize, value: fn(&BufferSpeed) -> f64| {
+        let of_size = speeds().flatten().filter(|speed| speed.bytes == bytes);
+        median(of_size.map(value).collect())
+    };
+    let pooled = sizes.into_iter().filter_map(|bytes| {
+        Some(BufferSpeed {
+            bytes,
+            gb_per_s: typical(bytes, |speed| speed.gb_per_s)?,
+            latency_ns: typical(bytes, |speed| speed.latency_ns)?,
+        })
+    });
+    pooled.collect()
 }
 
 fn count_all(
@@ -215,15 +310,30 @@ fn left_out_buffers(memory: &MemorySpeed) -> Option<String> {
     ))
 }
 
-/// Returns the time from the report, compared with the speed of memory.
-fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
-    let result = report.row(row.reads.relation.name(), &row.backend)?;
+/// Adds the times `results` to the rows, compared with the speed of memory.
+fn compare(rows: &mut [WhyRow], results: &[ResultRow], memory: &MemorySpeed) {
+    for row in rows {
+        let key = (row.reads.relation.name(), row.backend.as_str());
+        let mut results = results.iter();
+        let result = results.find(|result| (&*result.operation, &*result.backend) == key);
+        row.timed = result.and_then(|result| timed(row, result, memory));
+    }
+}
+
+/// Returns a time, compared with the speed of memory.
+fn timed(row: &WhyRow, result: &ResultRow, memory: &MemorySpeed) -> Option<Timed> {
     let ns_per_element = result.ns_per_element?;
+    let elements = result.elements? as f64;
+    let each = |ns: f64| ns / elements;
+    let launches = result.launch_ns.iter();
     let speed = memory.at(row.reads.sweep_bytes(LINE_BYTES));
     let floor_ns = row.reads.moved_bytes / speed.gb_per_s;
     let waits_ns = row.reads.jumps * speed.latency_ns;
     Some(Timed {
         ns_per_element,
+        launch_ns: launches.map(|ns| ns.map(each)).collect(),
+        ci_low_ns: result.ci_low_ns.map(each),
+        ci_high_ns: result.ci_high_ns.map(each),
         sampled: result.sampled,
         agreement: result.agreement,
         speed,
@@ -307,6 +417,7 @@ mod tests {
             relations: vec![Relation::VertexFaces],
             timing: Some(Timing {
                 effort: Effort::of_ms(20),
+                seed: 1,
             }),
             ..WhySettings::default()
         };
@@ -319,7 +430,7 @@ mod tests {
         let [row] = &why.rows[..] else {
             panic!("one row: {:?}", why.rows);
         };
-        let timed = row.timed.expect("measured");
+        let timed = row.timed.as_ref().expect("measured");
         assert_eq!(timed.speed, memory.speeds()[0], "it fits the smallest");
         let floor = row.reads.moved_bytes / timed.speed.gb_per_s;
         assert_eq!(timed.floor_ns, floor);
@@ -349,6 +460,7 @@ mod tests {
         let one_round = WhySettings {
             timing: Some(Timing {
                 effort: Effort::of_rounds(1),
+                seed: 1,
             }),
             ..settings
         };
@@ -357,6 +469,89 @@ mod tests {
         let run = &why.run.settings;
         assert_eq!((run.budget_s, run.rounds), (None, NonZeroU32::new(1)));
         assert!(why.samples.iter().all(|samples| samples.rounds == [0]));
+    }
+
+    #[test]
+    fn launches_are_pooled_and_explained_anew() {
+        let study_mesh = StudyMesh::new("grid", shapes::triangle_grid(6, 6).expect("a grid"));
+        let settings = WhySettings {
+            backends: vec!["half-edge".into(), "face-vertex".into()],
+            relations: vec![Relation::VertexFaces],
+            timing: Some(Timing {
+                effort: Effort::of_rounds(2),
+                seed: 1,
+            }),
+            ..WhySettings::default()
+        };
+        let stop = AtomicBool::new(false);
+        let machine = SimulatedMachine::equal_costs();
+        let first = why_on(&machine, &study_mesh, &settings, &stop, &mut |_| ());
+        let first = first.expect("both can hold the mesh");
+        let buffer = |bytes, gb_per_s, latency_ns| BufferSpeed {
+            bytes,
+            gb_per_s,
+            latency_ns,
+        };
+        let small = first.memory.as_ref().expect("measured")[0].bytes;
+        // A launch takes `times` the time of the first.
+        let launch = |times: f64, memory: Vec<BufferSpeed>| {
+            let mut launch = first.clone();
+            launch.memory = Some(memory);
+            for timed in launch.rows.iter_mut().filter_map(|row| row.timed.as_mut()) {
+                timed.ns_per_element *= times;
+                timed.bound = Bound::Bandwidth;
+            }
+            launch
+        };
+        let pooled = pool_why(vec![
+            launch(1.0, vec![buffer(small, 1.0, 3.0)]),
+            launch(
+                2.0,
+                vec![buffer(small, 4.0, 2.0), buffer(4 * small, 0.5, 9.0)],
+            ),
+            launch(4.0, vec![buffer(small, 9.0, 1.0)]),
+        ]);
+        let memory = [buffer(small, 4.0, 2.0), buffer(4 * small, 0.5, 9.0)];
+        assert_eq!(pooled.memory.as_deref(), Some(&memory[..]));
+        assert_eq!(pooled.run.settings.launches, NonZeroU32::new(3));
+        assert_eq!(pooled.rows.len(), 2);
+        for (row, one) in pooled.rows.iter().zip(&first.rows) {
+            let (timed, one_ns) = (row.timed.as_ref().expect("measured"), one.timed.as_ref());
+            let one_ns = one_ns.expect("measured").ns_per_element;
+            assert_eq!(row.reads, one.reads);
+            let close = |ns: f64, factor: f64| (ns / one_ns / factor - 1.0).abs() < 1e-9;
+            let launches: Vec<f64> = timed.launch_ns.iter().copied().flatten().collect();
+            assert!(
+                close(launches[0], 1.0) && close(launches[2], 4.0),
+                "{timed:?}"
+            );
+            assert!(close(timed.ns_per_element, 2.0), "{timed:?}");
+            let [low, high] =
+                [timed.ci_low_ns, timed.ci_high_ns].map(|ns| ns.expect("an interval"));
+            assert!(low < timed.ns_per_element && timed.ns_per_element < high);
+            assert_eq!(
+                timed.speed, memory[0],
+                "the queries touch less than the second buffer"
+            );
+            assert_eq!(timed.floor_ns, row.reads.moved_bytes / 4.0);
+            assert_eq!(timed.waits_ns, 2.0 * row.reads.jumps);
+            let bound = Bound::from_times(timed.ns_per_element, timed.floor_ns, timed.waits_ns);
+            assert_eq!(
+                (timed.bound, bound),
+                (Bound::Work, Bound::Work),
+                "{timed:?}"
+            );
+        }
+        assert!(
+            pooled.sentences[1].contains("work on nearby data in 2"),
+            "{pooled:?}"
+        );
+        let left_out = pooled.warnings.iter();
+        let left_out: Vec<_> = left_out
+            .filter(|w| w.contains("speed of buffers"))
+            .collect();
+        assert_eq!(left_out.len(), 1, "{:?}", pooled.warnings);
+        assert!(left_out[0].contains(&bytes(16 * small)), "{left_out:?}");
     }
 
     #[test]

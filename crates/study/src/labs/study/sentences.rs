@@ -124,19 +124,23 @@ pub(crate) fn notes(backends: &[BackendReport], results: &[ResultRow]) -> Vec<St
 
 /// Returns a warning for each result that differs from the results of the other backends.
 pub(crate) fn mismatches(report: &Report) -> Vec<String> {
-    let mismatch = |row: &ResultRow, consequence: &str| {
-        let (operation, backend) = (&row.operation, &row.backend);
-        format!(
-            "{operation} on {backend} gives different results from the other backends. \
-             {consequence}"
-        )
-    };
-    let ours = report.mismatches();
-    let ours = ours.map(|row| mismatch(row, "This is a fault in Sixfold: please report it."));
+    let ours = report.mismatches().map(fault);
     let programs = report.external_mismatches();
     let not_compared = "The times of this backend cannot be compared.";
     let programs = programs.map(|row| mismatch(row, not_compared));
     ours.chain(programs).collect()
+}
+
+/// Returns the warning about a result that differs from those of other backends of Sixfold.
+pub(crate) fn fault(row: &ResultRow) -> String {
+    mismatch(row, "This is a fault in Sixfold: please report it.")
+}
+
+fn mismatch(row: &ResultRow, consequence: &str) -> String {
+    let (operation, backend) = (&row.operation, &row.backend);
+    format!(
+        "{operation} on {backend} gives different results from the other backends. {consequence}"
+    )
 }
 
 fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {

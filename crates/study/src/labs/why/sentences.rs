@@ -51,7 +51,7 @@ fn limits(rows: &[WhyRow]) -> Option<String> {
         (Bound::Bandwidth, "memory bandwidth"),
         (Bound::Latency, "memory latency"),
     ] {
-        let is_it = |row: &&WhyRow| row.timed.is_some_and(|timed| timed.bound == bound);
+        let is_it = |row: &&WhyRow| row.timed.as_ref().is_some_and(|timed| timed.bound == bound);
         let limited: Vec<&WhyRow> = rows.iter().filter(is_it).collect();
         match limited.len() {
             0 => {}
@@ -129,6 +129,9 @@ mod tests {
     fn timed(bound: Bound) -> Option<Timed> {
         Some(Timed {
             ns_per_element: 1.0,
+            launch_ns: Vec::new(),
+            ci_low_ns: None,
+            ci_high_ns: None,
             sampled: false,
             agreement: Agreement::Same,
             speed: BufferSpeed {
