@@ -81,6 +81,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study scans --report results              all meshes in a folder; --resume continues
   sixfold study bunny.obj --figures paper           figures as SVG and PDF, tables for LaTeX
 
+  sixfold study scans --keep-going                  exit code 0 also if a mesh cannot be read
 Measurement: A study is several launches: fresh processes that measure one after the other. Each
 round of a launch runs every operation once on every backend, in random order. The clock measures
 the processor time of the thread. A launch gives the median over its rounds, and the table shows the
@@ -110,9 +111,11 @@ allocator decides which freed pages it keeps. The time of an operation that allo
 depends on the previous operations. With --caches cold, the caches are filled with other data before
 each timed run. `compare` and `merge` refuse results that differ in --heap or --caches.
 
-Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), or the results of an
-external program differ; 2 wrong usage or unusable input; 3 none of the selected backends can hold
-the mesh; 4 interrupted, finished results are kept.";
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), the results of an
+external program differ, or a part is missing: a mesh that cannot be read, an external program that
+failed, or a launch that died (the other results are written; with --keep-going, a missing part is
+no error); 2 wrong usage or unusable input; 3 none of the selected backends can hold the mesh;
+4 interrupted, finished results are kept.";
 
 const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 1/2 --report one      part 1, on one machine
@@ -339,7 +342,7 @@ pub(crate) struct EffortArgs {
     rounds: Option<NonZeroU32>,
 }
 
-// In how many processes to measure.
+// In how many processes to measure, and what it means if a part fails.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LaunchArgs {
     /// Measure in N fresh processes [default: by the budget, 5 for 20s]
@@ -349,6 +352,9 @@ pub(crate) struct LaunchArgs {
 
 impl EffortArgs {
     /// Returns the number of rounds, or else the time, of this process, which may be one of several launches.
+    /// Exit code 0 also if a part cannot be measured; a note names it
+    #[arg(long)]
+    pub(crate) keep_going: bool,
     pub(crate) fn effort(self) -> Effort {
         let whole = self
             .rounds

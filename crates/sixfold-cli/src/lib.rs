@@ -43,7 +43,7 @@
 //! | code | means |
 //! |---|---|
 //! | 0 | success |
-//! | 1 | negative answer: no backend qualifies, a figure is slower, results differ, a launch died, or a file does not keep a repair |
+//! | 1 | negative answer: no backend qualifies, a figure is slower, results differ, a part cannot be measured (see `--keep-going`), or a file does not keep a repair |
 //! | 2 | wrong usage or unusable input |
 //! | 3 | not supported: none of the selected backends can hold the mesh |
 //! | 4 | interrupted; finished results are kept |

@@ -55,7 +55,10 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     bar.clear();
     let report = report?;
     print(&report, &mut session.text);
-    session.finish(with_command(report, arguments.triangulate).into())
+    session.finish(
+        with_command(report, arguments.triangulate).into(),
+        arguments.launching.keep_going,
+    )
 }
 
 /// Measures the mesh in all orders, if there is enough free memory.

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use clap::{CommandFactory, FromArgMatches};
 use sixfold::UnknownName;
 use sixfold_results::numbers::{bytes, counted, figure};
-use sixfold_results::{Finding, PickReport, Results};
+use sixfold_results::{Failed, Finding, PickReport, Results};
 use sixfold_study::{
     ChildTask, Effort, Isolation, ProgramSettings, StudyMesh, Suite, SuiteProgram, free_memory,
     serve_program,
@@ -88,6 +88,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
             &arguments.meshes,
             (arguments.read, arguments.triangulate),
             &arguments.files,
+            arguments.keep_going,
             Limits {
                 sample: arguments.time_limit.filter(|_| !arguments.isolate),
                 ..Limits::new(arguments.effort.effort(), memory_limit)
@@ -138,8 +139,8 @@ fn serve(
 
 fn after_help(names: &[&str]) -> String {
     format!(
-        "Programs: {}\n\nExit codes: 0 success; 1 no structure qualifies for a program, or results \
-         differ between\nstructures; 2 wrong usage or unusable input; 4 interrupted, or a program \
+        "Programs: {}\n\nExit codes: 0 success; 1 no structure qualifies for a program, results \
+         differ between\nstructures, or a mesh of several cannot be read; 2 wrong usage or unusable input; 4 interrupted, or a program \
          did not end;\nfinished results are kept.",
         names.join(", ")
     )
@@ -152,12 +153,13 @@ pub(crate) fn measure(
     meshes: &[PathBuf],
     (read, triangulate): (ReadFiles, bool),
     files: &ResultFiles,
+    keep_going: bool,
     limits: Limits,
 ) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, files, settings.heap)?;
-    let study_meshes = pick::study_meshes(&meshes, read, triangulate)?;
+    let (study_meshes, failed) = pick::study_meshes(&meshes, read, triangulate)?;
     let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
     let study_meshes: Vec<StudyMesh> = drawn.collect();
     warn_of_debug_build();
@@ -172,7 +174,7 @@ pub(crate) fn measure(
             .print_line(&hanging_indent("Trace:    ", &line));
     }
     let stop = Arc::clone(&session.stop);
-    let kept = Kept::new(session);
+    let kept = Kept::new(session, failed, keep_going);
     kept.end_at(limits, Arc::clone(&stop));
     let bar = Bar::new();
     let mut show = |done: f64, what: &str| {
@@ -210,6 +212,10 @@ struct KeptState {
     /// `None` after the results were written.
     session: Option<Session>,
     findings: Vec<Finding>,
+    /// The meshes that could not be read.
+    failed: Vec<Failed>,
+    /// Whether it is no error if a part cannot be measured.
+    keep_going: bool,
     none_qualifies: Vec<String>,
     /// The current step, such as `geodesics: measuring run on half-edge`, and its start.
     step: String,
@@ -263,10 +269,12 @@ impl Limits {
 }
 
 impl Kept {
-    fn new(session: Session) -> Self {
+    fn new(session: Session, failed: Vec<Failed>, keep_going: bool) -> Self {
         Self(Arc::new(Mutex::new(KeptState {
             session: Some(session),
             findings: Vec::new(),
+            failed,
+            keep_going,
             none_qualifies: Vec::new(),
             step: "loading".into(),
             step_start: Instant::now(),
@@ -308,9 +316,10 @@ impl Kept {
             for finding in std::mem::take(&mut kept.findings) {
                 results.add(finding);
             }
+            results.add_failures(std::mem::take(&mut kept.failed));
             results
         };
-        let code = session.finish(results)?;
+        let code = session.finish(results, kept.keep_going)?;
         if kept.none_qualifies.is_empty() {
             return Ok(code);
         }

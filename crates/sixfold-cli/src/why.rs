@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     print_before_measuring(&study_mesh, &chosen, &mut session.text);
     let why = measure(&study_mesh, settings, effort, &session.stop, &Bar::new())?;
     print(&why, !arguments.relations.is_empty(), &mut session.text);
-    session.finish(with_command(why, arguments.triangulate).into())
+    session.finish(with_command(why, arguments.triangulate).into(), false)
 }
 
 /// Counts reads. If there is an `effort`, also measures times.

@@ -138,7 +138,7 @@ and it is reversed if another one is, beyond chance. Otherwise it cannot be told
 for at its path, beside RESULTS.json, and under --meshes; its content must be that of the results.
 
 Exit codes: 0 no conclusion is reversed; 1 a conclusion is reversed, or results differ between
-backends; 2 wrong usage, a file without results, a command that cannot be repeated, or a mesh that
+backends or are missing; 2 wrong usage, a file without results, a command that cannot be repeated, or a mesh that
 is missing or has changed; 4 interrupted.";
 
 /// Measure saved results again, and say which conclusions stand.

@@ -43,6 +43,9 @@ pub(crate) struct Programs {
     /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
+    /// Exit code 0 also if a mesh cannot be read; a note names it
+    #[arg(long)]
+    pub(crate) keep_going: bool,
     /// Run each structure in a process of its own: if the program crashes, does not end or uses too
     /// much memory on one structure, the others are still measured
     #[arg(long, conflicts_with = "record")]
