@@ -31,7 +31,9 @@ use sixfold::{Relation, UnknownName};
 use sixfold_results::{CacheState, Policy};
 use sixfold_study::{Effort, External, Settings};
 
-pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders, Rerun};
+pub(crate) use comparing::{
+    ChangeArgs, Compare, GROWTH_EXAMPLES, Growth, History, ORDERS_EXAMPLES, Orders, Rerun,
+};
 pub(crate) use convert::Convert;
 pub(crate) use distance::Distance;
 pub(crate) use files::{MeshInOut, ReadFiles, ReadPolygons, ShapeCheck, WriteFiles};
@@ -79,9 +81,9 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all meshes in a folder; --resume continues
+  sixfold study scans --keep-going                  exit code 0 also if a mesh cannot be read
   sixfold study bunny.obj --figures paper           figures as SVG and PDF, tables for LaTeX
 
-  sixfold study scans --keep-going                  exit code 0 also if a mesh cannot be read
 Measurement: A study is several launches: fresh processes that measure one after the other. Each
 round of a launch runs every operation once on every backend, in random order. The clock measures
 the processor time of the thread. A launch gives the median over its rounds, and the table shows the
@@ -200,6 +202,8 @@ pub(crate) enum Command {
     Report(Draw),
     /// Compare two files of results, and show what became slower or faster beyond chance
     Compare(Compare),
+    /// Show how times went over saved results, such as one file for each commit
+    History(History),
     /// Measure saved results again, and say which conclusions stand
     Rerun(Rerun),
     /// Show facts about meshes, and which data structures can hold them
@@ -348,13 +352,13 @@ pub(crate) struct LaunchArgs {
     /// Measure in N fresh processes [default: by the budget, 5 for 20s]
     #[arg(long, value_name = "N", value_parser = launches, allow_hyphen_values = true)]
     pub(crate) launches: Option<NonZeroU32>,
+    /// Exit code 0 also if a part cannot be measured; a note names it
+    #[arg(long)]
+    pub(crate) keep_going: bool,
 }
 
 impl EffortArgs {
     /// Returns the number of rounds, or else the time, of this process, which may be one of several launches.
-    /// Exit code 0 also if a part cannot be measured; a note names it
-    #[arg(long)]
-    pub(crate) keep_going: bool,
     pub(crate) fn effort(self) -> Effort {
         let whole = self
             .rounds

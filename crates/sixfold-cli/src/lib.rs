@@ -63,6 +63,7 @@ mod free_memory;
 mod generate;
 mod growth;
 mod help;
+mod history;
 mod inspect;
 mod launches;
 mod left_out;
@@ -154,6 +155,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),
         Ok(Some(Command::Report(arguments))) => many::draw(&arguments),
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
+        Ok(Some(Command::History(arguments))) => history::run(&arguments),
         Ok(Some(Command::Rerun(arguments))) => rerun::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Distance(arguments))) => distance::run(&arguments),
