@@ -78,6 +78,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study quads.obj --triangulate --budget 2m
   sixfold study bunny.obj --rounds 10               the same work on every machine
   sixfold study bunny.obj --json - --csv bunny.csv
+  sixfold study bunny.obj --markdown bunny.md       the answer and all tables, for a README
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all meshes in a folder; --resume continues

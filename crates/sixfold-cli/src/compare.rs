@@ -21,7 +21,7 @@ use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::measure::command_line;
 use crate::mesh_files::shown;
-use crate::output::{Output, cannot_write, check_not_overwritten, check_outputs, is_stdout};
+use crate::output::{Output, cannot_write, check_not_overwritten, check_outputs, uses_stdout};
 use crate::paper;
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent};
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let json = Output::open_if(options.json.as_ref())?;
     let changes = compare(&before, &after, options.settings()).map_err(Failure::usage)?;
     let pages = Pages::open(options)?;
-    let mut text = TextOutput::new(!options.json.as_deref().is_some_and(is_stdout));
+    let mut text = TextOutput::new(!uses_stdout(&outputs));
     print(&changes, options.all, &mut text);
     let names = names(places.map(|place| place.as_path()));
     let drawn = pages.write(
@@ -75,46 +75,53 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     })
 }
 
-/// The folders of --report and --figures.
+/// The outputs that are drawn: those of --report, --figures and --markdown.
 pub(crate) struct Pages<'a> {
     report: Option<(&'a PathBuf, ListedFolder)>,
     figures: Option<ListedFolder>,
+    markdown: Option<Output>,
 }
 
 impl<'a> Pages<'a> {
-    /// Opens or creates the folders.
+    /// Opens the file, and opens or creates the folders.
     pub(crate) fn open(options: &'a ChangeArgs) -> Result<Self, Failure> {
         let report = ListedFolder::open_if(options.report.as_ref())?;
         Ok(Self {
             report: options.report.as_ref().zip(report),
             figures: ListedFolder::open_if(options.figures.as_ref())?,
+            markdown: Output::open_if(options.markdown.as_ref())?,
         })
     }
 
     /// Writes the page that `draw` returns with its figures and with the file `json_name` of all data, and prints
-    /// where it is. Draws nothing without a folder.
+    /// where it is. Draws nothing if nothing is asked for.
     pub(crate) fn write(
-        &self,
+        self,
         text: &mut TextOutput,
         draw: impl FnOnce() -> ReportPage,
         json_name: &str,
         write_json: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        if self.report.is_none() && self.figures.is_none() {
+        if self.report.is_none() && self.figures.is_none() && self.markdown.is_none() {
             return Ok(());
         }
         let page = draw();
         let mut drawn = Ok(());
+        if let Some(output) = self.markdown {
+            let tables = page.markdown_tables();
+            drawn = output.finish(|writer| writer.write_all(tables.as_bytes()));
+        }
         if let Some((path, folder)) = &self.report {
             let mut json = Vec::new();
             write_json(&mut json).map_err(|cause| cannot_write(json_name, &cause))?;
             let mut files = page.files();
             files.push(PaperFile::new(json_name, json));
-            drawn = folder.write(files);
-            if drawn.is_ok() {
+            let written = folder.write(files);
+            if written.is_ok() {
                 let line = format!("Report: {}", shown(&path.join("report.html")));
                 text.print_line(&hanging_indent("- ", &line));
             }
+            drawn = drawn.and(written);
         }
         match &self.figures {
             Some(folder) => drawn.and(paper::write(folder, page.figure_files())),

@@ -22,7 +22,7 @@ use crate::failure::Failure;
 use crate::load::{read_results, results_path};
 use crate::measure::command_line;
 use crate::mesh_files::shown;
-use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
+use crate::output::{Output, check_not_overwritten, check_outputs, uses_stdout};
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
 
 /// Maximum number of documents whose signs a row shows.
@@ -30,8 +30,8 @@ const COURSE: usize = 12;
 
 pub(crate) fn run(arguments: &arguments::History) -> Result<ExitCode, Failure> {
     let options = &arguments.changes;
-    let [json, report, figures] = options.outputs();
-    let outputs = [json, report, figures, ("--csv", arguments.csv.as_ref())];
+    let mut outputs = options.outputs().to_vec();
+    outputs.push(("--csv", arguments.csv.as_ref()));
     check_outputs(None, &outputs)?;
     let documents = read_documents(&arguments.results, &outputs)?;
     let named: Vec<(&str, &Results)> = documents.iter().map(|(name, r)| (&**name, r)).collect();
@@ -50,8 +50,7 @@ pub(crate) fn run(arguments: &arguments::History) -> Result<ExitCode, Failure> {
     let [json, csv] = files;
     let (json, csv) = (json?, csv?);
     let pages = Pages::open(options)?;
-    let mut piped = [&options.json, &arguments.csv].into_iter().flatten();
-    let mut text = TextOutput::new(!piped.any(|path| is_stdout(path)));
+    let mut text = TextOutput::new(!uses_stdout(&outputs));
     for (number, group) in history.groups.iter().enumerate() {
         if number > 0 {
             text.print_line("");

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use sixfold_report::ReportPage;
 use sixfold_results::numbers::counted;
 use sixfold_results::{Agreement, FailureKind, Finding, Policy, Report, ResultRow, Results};
 use sixfold_study::StudyMesh;
@@ -15,7 +16,7 @@ use crate::baselines::Baselines;
 use crate::failure::Failure;
 use crate::launches::{self, Launch};
 use crate::mesh_picture::with_picture;
-use crate::output::{Output, check_outputs, is_stdout};
+use crate::output::{Output, check_outputs, uses_stdout};
 use crate::progress::{INTERRUPTED, interrupt_flag};
 use crate::text::{TextOutput, print_notice, print_stderr, take_notices};
 
@@ -38,6 +39,7 @@ struct OpenFiles {
     json: Option<Output>,
     csv: Option<Output>,
     samples_csv: Option<Output>,
+    markdown: Option<Output>,
 }
 
 impl Session {
@@ -65,22 +67,20 @@ impl Session {
                     json: Output::open_if(Some(&PathBuf::from("-")))?,
                     csv: None,
                     samples_csv: None,
+                    markdown: None,
                 },
             });
         }
-        let uses_stdout = files
-            .options()
-            .iter()
-            .any(|(_, path)| path.is_some_and(|p| is_stdout(p)));
         Ok(Self {
             stop,
-            text: TextOutput::new(!uses_stdout),
+            text: TextOutput::new(!uses_stdout(&files.options())),
             tags: files.tags.clone(),
             baselines: Baselines::open(files)?,
             files: OpenFiles {
                 json: Output::open_if(files.json.as_ref())?,
                 csv: Output::open_if(files.csv.as_ref())?,
                 samples_csv: Output::open_if(files.samples_csv.as_ref())?,
+                markdown: Output::open_if(files.markdown.as_ref())?,
             },
         })
     }
@@ -117,6 +117,7 @@ impl Session {
             json,
             csv,
             samples_csv,
+            markdown,
         } = self.files;
         let mut done = self.text.finish().and(self.baselines.save(results));
         if let Some(output) = json {
@@ -127,6 +128,10 @@ impl Session {
         }
         if let Some(output) = samples_csv {
             done = done.and(output.finish(|writer| results.write_samples_csv(writer)));
+        }
+        if let Some(output) = markdown {
+            let tables = ReportPage::new(results, &command_line()).markdown_tables();
+            done = done.and(output.finish(|writer| writer.write_all(tables.as_bytes())));
         }
         done
     }
@@ -252,7 +257,10 @@ fn lacking(results: &Results) -> Vec<(String, String)> {
         });
         lacking.extend(programs.map(|(name, why)| {
             let what = format!("{}: results of {name} are missing: {why}", study.mesh.name);
-            (what, format!("correct the program, or leave out --external {name}"))
+            (
+                what,
+                format!("correct the program, or leave out --external {name}"),
+            )
         }));
     }
     if launches::has_died() {

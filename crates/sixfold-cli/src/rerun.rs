@@ -21,10 +21,11 @@ use crate::text::{TextOutput, hanging_indent, sanitize};
 /// The exit code if a conclusion is reversed, or if results differ between backends or are missing.
 const REVERSED: u8 = 1;
 /// Options with a value that are not repeated: those that name files to write, and those that are only for a report.
-const LEFT_OUT: [&str; 9] = [
+const LEFT_OUT: [&str; 10] = [
     "--json",
     "--csv",
     "--samples-csv",
+    "--markdown",
     "--report",
     "--figures",
     "--save-baseline",

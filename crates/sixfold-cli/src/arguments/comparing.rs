@@ -68,6 +68,7 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1 or 3
   sixfold compare laptop.json server.json --relative
   sixfold compare before.json after.json --report changes      a page with figures
+  sixfold compare before.json after.json --markdown -          tables for a pull request
 
 Each file has results of any commands that measure. A measurement is the time of one operation on
 one backend, by the same command, on the same mesh and in the same case (order, size or workload).
@@ -133,6 +134,9 @@ pub(crate) struct ChangeArgs {
     /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    /// Write the answer and all tables as Markdown (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) markdown: Option<PathBuf>,
 }
 
 impl ChangeArgs {
@@ -145,11 +149,12 @@ impl ChangeArgs {
     }
 
     /// Returns the options that write, with their paths.
-    pub(crate) fn outputs(&self) -> [(&'static str, Option<&PathBuf>); 3] {
+    pub(crate) fn outputs(&self) -> [(&'static str, Option<&PathBuf>); 4] {
         [
             ("--json", self.json.as_ref()),
             ("--report", self.report.as_ref()),
             ("--figures", self.figures.as_ref()),
+            ("--markdown", self.markdown.as_ref()),
         ]
     }
 }
