@@ -159,7 +159,7 @@ impl<'c> Ranked<'c> {
             self.name(&row.measurement),
             times(self.value(row)),
             both_times(row),
-            verdict_text(row),
+            verdict_text(row.verdict, row.other_checksum),
             grouped(row.before_samples),
             grouped(row.after_samples)
         )
@@ -205,7 +205,7 @@ impl<'c> Ranked<'c> {
                     grouped(row.before_samples),
                     grouped(row.after_samples)
                 ),
-                verdict_text(row).to_owned(),
+                verdict_text(row.verdict, row.other_checksum).to_owned(),
             ]);
             table.row(cells);
         }
@@ -219,9 +219,9 @@ pub(crate) fn both_times(row: &Change) -> String {
 }
 
 /// Returns the verdict in words.
-pub(crate) fn verdict_text(row: &Change) -> &'static str {
-    match row.verdict {
-        _ if row.other_checksum => "different work",
+pub(crate) fn verdict_text(verdict: Verdict, other_checksum: bool) -> &'static str {
+    match verdict {
+        _ if other_checksum => "different work",
         Verdict::Faster => "faster",
         Verdict::Slower => "slower",
         Verdict::Same => "equal",

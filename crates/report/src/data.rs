@@ -21,7 +21,8 @@ pub(crate) fn own_columns<R: Serialize>(rows: impl IntoIterator<Item = R>) -> St
     into_text(lines.into_inner().expect("memory can be written"))
 }
 
-fn into_text(csv: Vec<u8>) -> String {
+/// Returns CSV in memory as text.
+pub(crate) fn into_text(csv: Vec<u8>) -> String {
     String::from_utf8(csv).expect("the fields are UTF-8")
 }
 
@@ -34,7 +35,7 @@ pub(crate) fn dates(first: u64, last: u64) -> String {
 }
 
 /// Formats a time in seconds since 1970 as a date of the Gregorian calendar: `2026-11-27`.
-pub(crate) fn date(unix_time: u64) -> String {
+pub fn date(unix_time: u64) -> String {
     // The calendar repeats itself every 400 years. A year begins in March here, so the leap day is its last
     // day, and the months have the lengths 31 30 31 30 31, 31 30 31 30 31, 31 ….
     const DAYS: u64 = 400 * 365 + 97;

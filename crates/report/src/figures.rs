@@ -5,6 +5,7 @@ pub(crate) mod break_even;
 pub(crate) mod changes;
 mod growth;
 mod heat_map;
+pub(crate) mod history;
 mod many;
 mod memory;
 mod orders;

@@ -12,7 +12,8 @@
 //! as SVG and PDF with its data and its caption, tables for LaTeX and Markdown, and a description of the
 //! methods.
 //!
-//! [`ReportPage::from_changes`] draws what changed between two results.
+//! [`ReportPage::from_changes`] draws what changed between two results, and [`ReportPage::from_history`] how times went
+//! over several.
 
 mod axes;
 mod canvas;
@@ -21,6 +22,7 @@ mod colours;
 mod data;
 mod figure;
 mod figures;
+mod history;
 mod html;
 mod markdown;
 mod matrix;
@@ -37,6 +39,7 @@ use sixfold_results::Results;
 
 pub use changes::Compared;
 pub use colours::structure_colours;
+pub use data::date;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
 pub use papers::{NoPdf, PaperFile, PaperFiles};

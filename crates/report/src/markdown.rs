@@ -9,6 +9,17 @@ impl ReportPage {
     /// Returns the page as Markdown. The page links to each figure as `figures/ID.svg`, where ID is
     /// the `id` of the figure.
     pub fn markdown(&self) -> String {
+        self.written(true)
+    }
+
+    /// Returns the page as Markdown without pictures, so that it needs no other file: the answer, and all tables.
+    pub fn markdown_tables(&self) -> String {
+        let mut text = self.written(false);
+        text.push_str(SIGNS);
+        text
+    }
+
+    fn written(&self, with_pictures: bool) -> String {
         let mut text = format!(
             "# {}\n\n```sh\n{}\n```\n\n",
             escape(&self.title),
@@ -45,7 +56,7 @@ impl ReportPage {
             write_titled_table(&mut text, table, "##");
         }
         for figure in &self.figures {
-            write_figure(&mut text, figure, "##");
+            write_figure(&mut text, figure, "##", with_pictures);
         }
         for table in &self.appendix {
             write_titled_table(&mut text, table, "##");
@@ -66,7 +77,7 @@ impl ReportPage {
                 write_table(&mut text, &summary.table());
             }
             for figure in &section.figures {
-                write_figure(&mut text, figure, "###");
+                write_figure(&mut text, figure, "###", with_pictures);
             }
             for table in &section.tables {
                 write_titled_table(&mut text, table, "###");
@@ -85,14 +96,25 @@ fn write_list(text: &mut String, sentences: &[String]) {
     }
 }
 
-fn write_figure(text: &mut String, figure: &Figure, heading: &str) {
+/// What the signs in tables mean. With pictures, their captions say it.
+const SIGNS: &str = "●: the fastest; ◐: shares the first place; ≥: lower bound; \\~: measured on some of the elements; \
+                     –: not measured.\n";
+
+/// Writes a figure: its picture with its caption, if asked for, and its table.
+fn write_figure(text: &mut String, figure: &Figure, heading: &str, with_picture: bool) {
     let (title, id) = (escape(&figure.title), &figure.id);
-    let _ = writeln!(text, "{heading} {title}\n\n![{title}](figures/{id}.svg)\n");
-    let _ = writeln!(text, "{}\n", escape(&figure.caption));
+    let _ = writeln!(text, "{heading} {title}\n");
+    if with_picture {
+        let _ = writeln!(text, "![{title}](figures/{id}.svg)\n");
+        let _ = writeln!(text, "{}\n", escape(&figure.caption));
+    }
     if !figure.source.is_empty() {
         let _ = writeln!(text, "{}\n", escape(&figure.source));
     }
     write_table(text, &figure.table);
+    if !with_picture {
+        return;
+    }
     let _ = writeln!(text, "```sh\n{}\n```\n", figure.command);
 }
 
@@ -121,18 +143,26 @@ fn write_table(text: &mut String, table: &Table) {
     text.push('\n');
 }
 
-/// Escapes the special characters of Markdown. Replaces line breaks by spaces.
+/// Escapes the special characters of Markdown on GitHub. Replaces line breaks by spaces. A `~` before a space or a
+/// sign strikes nothing out.
 pub(crate) fn escape(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' | '\r' => plain.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' => {
-                plain.push('\\');
-                plain.push(c);
+    let mut letters = text.chars().peekable();
+    while let Some(c) = letters.next() {
+        let is_special = match c {
+            '\n' | '\r' => {
+                plain.push(' ');
+                continue;
             }
-            c => plain.push(c),
+            '~' => letters
+                .peek()
+                .is_some_and(|&next| next == '~' || next.is_alphanumeric()),
+            c => "\\`*_[]<>|#&$".contains(c),
+        };
+        if is_special {
+            plain.push('\\');
         }
+        plain.push(c);
     }
     plain
 }
@@ -145,6 +175,8 @@ mod tests {
     fn file_names_are_escaped() {
         assert_eq!(escape("a|b_[c](d).obj"), "a\\|b\\_\\[c\\](d).obj");
         assert_eq!(escape("a\nb"), "a b");
+        assert_eq!(escape("~~a~1~ & $b$"), "\\~\\~a\\~1~ \\& \\$b\\$");
+        assert_eq!(escape("~ 1.31 ×"), "~ 1.31 ×");
     }
 
     #[test]

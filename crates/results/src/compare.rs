@@ -26,6 +26,7 @@ use crate::rows::Standing;
 use crate::run::Run;
 use crate::statistics::{median, quotient};
 use matching::{AllMeasured, CommonMeshes, MeasuredFigure, measurements};
+pub(crate) use sentences::{is_or_are, verdict_counts};
 
 /// The probability with which a comparison calls any of its times slower though the program did not change; likewise faster.
 pub const FALSE_ALARM: f64 = 1.0 / 200.0;
@@ -39,6 +40,9 @@ pub struct CompareSettings {
     /// Ratios of times up to this value count as equal, even if they are not due to chance. A time cannot be told
     /// if a change by the square of this value could be due to chance.
     pub noise: f64,
+    /// The number of comparisons that are made together: all of them call a time slower or faster by chance as rarely
+    /// as one does.
+    pub comparisons: usize,
 }
 
 impl Default for CompareSettings {
@@ -46,6 +50,7 @@ impl Default for CompareSettings {
         Self {
             relative: false,
             noise: EQUAL,
+            comparisons: 1,
         }
     }
 }
@@ -265,7 +270,11 @@ pub fn compare(
     }
     in_both().try_for_each(|(a, b)| check_memory(a.finding, b.finding))?;
 
-    let CompareSettings { relative, noise } = settings;
+    let CompareSettings {
+        relative,
+        noise,
+        comparisons,
+    } = settings;
     let pairs: Vec<Pair<'_>> = in_both().collect();
     // The rows of two findings have their launches in common.
     let of_one = |a: &Pair<'_>, b: &Pair<'_>| {
@@ -276,7 +285,7 @@ pub fn compare(
         compared.extend(changes(pairs, relative));
     }
     let overall = median(compared.iter().map(|(row, _)| row.ratio).collect());
-    let level = FALSE_ALARM / compared.len().max(1) as f64;
+    let level = FALSE_ALARM / (compared.len().max(1) * comparisons.max(1)) as f64;
     let divisor = overall.filter(|_| relative).unwrap_or(1.0);
     let rows = compared.into_iter().map(|(row, change)| Change {
         detectable: change.map(|change| change.detectable(level)),

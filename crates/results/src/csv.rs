@@ -172,7 +172,7 @@ fn sample_rows<'r>(kind: &'r str, figure: &'r Figure<'_>) -> impl Iterator<Item 
 }
 
 /// Returns the I/O error inside a CSV error, so that a closed pipe can be detected.
-fn into_io_error(error: csv::Error) -> io::Error {
+pub(crate) fn into_io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(cause) => cause,
         other => io::Error::other(format!("{other:?}")),

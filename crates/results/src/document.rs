@@ -29,7 +29,7 @@ pub struct Results {
     pub planned: Vec<String>,
     /// The findings: first the studies, then the findings of other commands.
     pub findings: Vec<Finding>,
-    /// The meshes that could not be studied.
+    /// The meshes that could not be measured.
     pub failures: Vec<Failed>,
     /// The notes and warnings that the commands printed, for example about a file that was read.
     pub notices: Vec<String>,
@@ -140,7 +140,8 @@ impl Results {
         self.planned.extend(new);
     }
 
-    /// Adds the failures of meshes that are neither studied nor failed.
+    /// Adds the failures of meshes that are neither studied nor failed. The meshes need not be planned: those of a
+    /// pick are not.
     pub fn add_failures(&mut self, failures: impl IntoIterator<Item = Failed>) {
         let studied = self.studies().map(|study| study.mesh.name.clone());
         let failed = self.failures.iter().map(|failed| failed.mesh.clone());
@@ -148,8 +149,6 @@ impl Results {
         let new = failures
             .into_iter()
             .filter(|failed| done.insert(failed.mesh.clone()));
-        let new: Vec<Failed> = new.collect();
-        self.plan(new.iter().map(|failed| failed.mesh.clone()));
         self.failures.extend(new);
         self.sort();
     }

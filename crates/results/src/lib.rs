@@ -1,8 +1,8 @@
 //! The results of measurements as one document, and the words that describe them.
 //!
 //! [`Results`] is the document with the findings of all measuring commands. It is read and written as
-//! JSON, written as CSV, and merged with other documents. [`compare`] compares two documents. A
-//! [`Pool`] has the means over the studies of many meshes.
+//! JSON, written as CSV, and merged with other documents. [`compare`] compares two documents, and a
+//! [`History`] several. A [`Pool`] has the means over the studies of many meshes.
 //!
 //! This crate does not measure, and it has no list of the operations, the structures or the programs
 //! that can be measured: a document says what was measured ([`OperationInfo`]). The file
@@ -17,6 +17,7 @@ mod environment;
 mod figure;
 mod finding;
 mod findings;
+mod history;
 mod json;
 pub mod launches;
 mod merge;
@@ -63,6 +64,7 @@ pub use findings::slope::Slope;
 pub use findings::spatial_task::{QueryPoints, SpatialTask};
 pub use findings::study::{Report, describe_noise};
 pub use findings::why::{Bound, BufferSpeed, Model, Reads, TableReads, Timed, Why, WhyRow};
+pub use history::{History, HistoryDocument, HistoryGroup, HistoryPoint, HistoryRow, LoneDocument};
 pub use json::write_json;
 pub use merge::MergeError;
 pub use operation::{OperationGroup, OperationInfo, Purpose};

@@ -121,6 +121,10 @@ pub struct ExternalReport {
     /// True if freed memory pages are kept for Sixfold's structures but not for this program.
     /// Allocations of this program may then cause page faults.
     pub own_heap: bool,
+    /// Why the program was given up: it ended, gave no answer in time, or broke the protocol. Its results are then
+    /// incomplete. `None` if it did not fail; a program may refuse the mesh or an operation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
 }
 
 /// A backend that cannot hold the mesh.

@@ -31,7 +31,9 @@ use sixfold::{Relation, UnknownName};
 use sixfold_results::{CacheState, Policy};
 use sixfold_study::{Effort, External, Settings};
 
-pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders, Rerun};
+pub(crate) use comparing::{
+    ChangeArgs, Compare, GROWTH_EXAMPLES, Growth, History, ORDERS_EXAMPLES, Orders, Rerun,
+};
 pub(crate) use convert::Convert;
 pub(crate) use distance::Distance;
 pub(crate) use files::{MeshInOut, ReadFiles, ReadPolygons, ShapeCheck, WriteFiles};
@@ -76,9 +78,11 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study quads.obj --triangulate --budget 2m
   sixfold study bunny.obj --rounds 10               the same work on every machine
   sixfold study bunny.obj --json - --csv bunny.csv
+  sixfold study bunny.obj --markdown bunny.md       the answer and all tables, for a README
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all meshes in a folder; --resume continues
+  sixfold study scans --keep-going                  exit code 0 also if a mesh cannot be read
   sixfold study bunny.obj --figures paper           figures as SVG and PDF, tables for LaTeX
 
 Measurement: A study is several launches: fresh processes that measure one after the other. Each
@@ -110,9 +114,11 @@ allocator decides which freed pages it keeps. The time of an operation that allo
 depends on the previous operations. With --caches cold, the caches are filled with other data before
 each timed run. `compare` and `merge` refuse results that differ in --heap or --caches.
 
-Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), or the results of an
-external program differ; 2 wrong usage or unusable input; 3 none of the selected backends can hold
-the mesh; 4 interrupted, finished results are kept.";
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), the results of an
+external program differ, or a part is missing: a mesh that cannot be read, an external program that
+failed, or a launch that died (the other results are written; with --keep-going, a missing part is
+no error); 2 wrong usage or unusable input; 3 none of the selected backends can hold the mesh;
+4 interrupted, finished results are kept.";
 
 const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 1/2 --report one      part 1, on one machine
@@ -197,6 +203,8 @@ pub(crate) enum Command {
     Report(Draw),
     /// Compare two files of results, and show what became slower or faster beyond chance
     Compare(Compare),
+    /// Show how times went over saved results, such as one file for each commit
+    History(History),
     /// Measure saved results again, and say which conclusions stand
     Rerun(Rerun),
     /// Show facts about meshes, and which data structures can hold them
@@ -339,12 +347,15 @@ pub(crate) struct EffortArgs {
     rounds: Option<NonZeroU32>,
 }
 
-// In how many processes to measure.
+// In how many processes to measure, and what it means if a part fails.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LaunchArgs {
     /// Measure in N fresh processes [default: by the budget, 5 for 20s]
     #[arg(long, value_name = "N", value_parser = launch_count, allow_hyphen_values = true)]
     pub(crate) launches: Option<NonZeroU32>,
+    /// Exit code 0 also if a part cannot be measured; a note names it
+    #[arg(long)]
+    pub(crate) keep_going: bool,
 }
 
 impl EffortArgs {

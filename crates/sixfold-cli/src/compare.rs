@@ -7,22 +7,21 @@
 //! DIR/sixfold-files.txt          the names of these files
 //! ```
 
+use std::io;
 use std::path::{self, Path, PathBuf};
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold_report::{Compared, PaperFile, ReportPage};
-use sixfold_results::{
-    Change, Changes, CompareSettings, Measurement, MeasurementPart, Verdict, compare,
-};
+use sixfold_results::{Change, Changes, Measurement, MeasurementPart, Verdict, compare};
 
-use crate::arguments::Compare;
+use crate::arguments::{ChangeArgs, Compare};
 use crate::failure::Failure;
 use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::measure::command_line;
 use crate::mesh_files::shown;
-use crate::output::{Output, cannot_write, check_not_overwritten, check_outputs, is_stdout};
+use crate::output::{Output, cannot_write, check_not_overwritten, check_outputs, uses_stdout};
 use crate::paper;
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent};
@@ -37,11 +36,8 @@ const CANNOT_TELL: u8 = 3;
 
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let places = [&arguments.before, &arguments.after];
-    let outputs = [
-        ("--json", arguments.json.as_ref()),
-        ("--report", arguments.report.as_ref()),
-        ("--figures", arguments.figures.as_ref()),
-    ];
+    let options = &arguments.changes;
+    let outputs = options.outputs();
     for place in places {
         check_not_overwritten("the results", place, &outputs)?;
         check_not_overwritten("the results", &load::results_path(place), &outputs)?;
@@ -49,33 +45,22 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     check_outputs(None, &outputs)?;
     let read = |path: &Path| load::read_results(path);
     let [before, after] = [read(places[0])?, read(places[1])?];
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let settings = CompareSettings {
-        relative: arguments.relative,
-        noise: arguments.noise,
-    };
-    let changes = compare(&before, &after, settings).map_err(Failure::usage)?;
-    let report = ListedFolder::open_if(arguments.report.as_ref())?;
-    let figures = ListedFolder::open_if(arguments.figures.as_ref())?;
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    print(&changes, arguments.all, &mut text);
-    let mut drawn = Ok(());
-    if report.is_some() || figures.is_some() {
-        let names = names(places.map(|place| place.as_path()));
-        let [before, after] = [(&names[0], &before), (&names[1], &after)]
-            .map(|(name, results)| Compared { name, results });
-        let page = ReportPage::from_changes(&changes, before, after, &command_line());
-        if let Some(folder) = &report {
-            drawn = write_report(folder, &page, &changes);
-        }
-        if let Some(folder) = &figures {
-            drawn = drawn.and(paper::write(folder, page.figure_files()));
-        }
-    }
-    if let (Ok(()), Some(folder)) = (&drawn, &arguments.report) {
-        let page = folder.join("report.html");
-        text.print_line(&hanging_indent("- ", &format!("Report: {}", shown(&page))));
-    }
+    let json = Output::open_if(options.json.as_ref())?;
+    let changes = compare(&before, &after, options.settings()).map_err(Failure::usage)?;
+    let pages = Pages::open(options)?;
+    let mut text = TextOutput::new(!uses_stdout(&outputs));
+    print(&changes, options.all, &mut text);
+    let names = names(places.map(|place| place.as_path()));
+    let drawn = pages.write(
+        &mut text,
+        || {
+            let [before, after] = [(&names[0], &before), (&names[1], &after)]
+                .map(|(name, results)| Compared { name, results });
+            ReportPage::from_changes(&changes, before, after, &command_line())
+        },
+        "changes.json",
+        |writer| changes.write_json(writer),
+    );
     let mut done = text.finish().and(drawn);
     if let Some(output) = json {
         done = done.and(output.finish(|writer| changes.write_json(writer)));
@@ -90,18 +75,59 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     })
 }
 
-/// Writes the page with its figures, and `changes.json`.
-fn write_report(
-    folder: &ListedFolder,
-    page: &ReportPage,
-    changes: &Changes,
-) -> Result<(), Failure> {
-    let mut json = Vec::new();
-    let written = changes.write_json(&mut json);
-    written.map_err(|cause| cannot_write("changes.json", &cause))?;
-    let mut files = page.files();
-    files.push(PaperFile::new("changes.json", json));
-    folder.write(files)
+/// The outputs that are drawn: those of --report, --figures and --markdown.
+pub(crate) struct Pages<'a> {
+    report: Option<(&'a PathBuf, ListedFolder)>,
+    figures: Option<ListedFolder>,
+    markdown: Option<Output>,
+}
+
+impl<'a> Pages<'a> {
+    /// Opens the file, and opens or creates the folders.
+    pub(crate) fn open(options: &'a ChangeArgs) -> Result<Self, Failure> {
+        let report = ListedFolder::open_if(options.report.as_ref())?;
+        Ok(Self {
+            report: options.report.as_ref().zip(report),
+            figures: ListedFolder::open_if(options.figures.as_ref())?,
+            markdown: Output::open_if(options.markdown.as_ref())?,
+        })
+    }
+
+    /// Writes the page that `draw` returns with its figures and with the file `json_name` of all data, and prints
+    /// where it is. Draws nothing if nothing is asked for.
+    pub(crate) fn write(
+        self,
+        text: &mut TextOutput,
+        draw: impl FnOnce() -> ReportPage,
+        json_name: &str,
+        write_json: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        if self.report.is_none() && self.figures.is_none() && self.markdown.is_none() {
+            return Ok(());
+        }
+        let page = draw();
+        let mut drawn = Ok(());
+        if let Some(output) = self.markdown {
+            let tables = page.markdown_tables();
+            drawn = output.finish(|writer| writer.write_all(tables.as_bytes()));
+        }
+        if let Some((path, folder)) = &self.report {
+            let mut json = Vec::new();
+            write_json(&mut json).map_err(|cause| cannot_write(json_name, &cause))?;
+            let mut files = page.files();
+            files.push(PaperFile::new(json_name, json));
+            let written = folder.write(files);
+            if written.is_ok() {
+                let line = format!("Report: {}", shown(&path.join("report.html")));
+                text.print_line(&hanging_indent("- ", &line));
+            }
+            drawn = drawn.and(written);
+        }
+        match &self.figures {
+            Some(folder) => drawn.and(paper::write(folder, page.figure_files())),
+            None => drawn,
+        }
+    }
 }
 
 /// Returns the names of two files or folders, with as many folders above them as make the names
@@ -179,16 +205,14 @@ fn name(measurement: &Measurement, parts: &[MeasurementPart]) -> String {
 }
 
 fn changes_table(rows: &[&Change]) -> String {
-    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-    let columns = Measurement::differing_parts(rows.iter().map(|row| &row.measurement));
-    let names = columns.iter().map(|(name, _)| *name);
-    let header = names.chain(["operation", "backend"]).map(Cell::new);
-    let figures = ["before", "after", "ratio", "95 %"].map(|name| right(name.into()));
-    let header = header.chain(figures).chain([Cell::new("")]);
-    let mut table = table(header.collect());
-    for row in rows {
-        let interval = row.ci_low.zip(row.ci_high);
-        let interval = interval.map(|(low, high)| format!("{low:.2}–{high:.2}"));
+    let figures = ["before", "after", "ratio", "95 %"];
+    let lines = rows.iter().map(|row| {
+        let figures = [
+            duration(row.before_ns),
+            duration(row.after_ns),
+            format!("{:.2}", row.ratio),
+            interval(row.ci_low, row.ci_high),
+        ];
         let verdict = match row.verdict {
             _ if row.other_checksum => "different checksum",
             Verdict::Faster => "faster",
@@ -196,19 +220,37 @@ fn changes_table(rows: &[&Change]) -> String {
             Verdict::Same => "",
             Verdict::CannotTell => "?",
         };
-        let place = columns
-            .iter()
-            .map(|(_, of)| Cell::new(of(&row.measurement)));
-        let figures = [
-            Cell::new(&row.measurement.operation),
-            Cell::new(&row.measurement.backend),
-            right(duration(row.before_ns)),
-            right(duration(row.after_ns)),
-            right(format!("{:.2}", row.ratio)),
-            right(interval.unwrap_or_else(|| "–".into())),
-            Cell::new(verdict),
-        ];
-        table.add_row(place.chain(figures).collect::<Vec<Cell>>());
+        (&row.measurement, figures, verdict.to_owned())
+    });
+    measurements_table(&figures, "", lines.collect())
+}
+
+/// Returns an interval of ratios as text.
+pub(crate) fn interval(low: Option<f64>, high: Option<f64>) -> String {
+    let ends = low.zip(high);
+    ends.map_or("–".into(), |(low, high)| format!("{low:.2}–{high:.2}"))
+}
+
+/// Returns a table of measurements with their `figures`, and the words `last`. Mesh, command and case have columns
+/// if they differ.
+pub(crate) fn measurements_table<const N: usize>(
+    figures: &[&str; N],
+    last: &str,
+    lines: Vec<(&Measurement, [String; N], String)>,
+) -> String {
+    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
+    let parts = Measurement::differing_parts(lines.iter().map(|(measurement, ..)| *measurement));
+    let names = parts.iter().map(|(name, _)| *name);
+    let header = names.chain(["operation", "backend"]).map(Cell::new);
+    let heads = figures.map(|name| right(name.into()));
+    let header = header.chain(heads).chain([Cell::new(last)]);
+    let mut table = table(header.collect());
+    for (measurement, figures, last) in lines {
+        let place = parts.iter().map(|(_, of)| Cell::new(of(measurement)));
+        let names = [&measurement.operation, &measurement.backend].map(Cell::new);
+        let figures = figures.map(right);
+        let cells = place.chain(names).chain(figures).chain([Cell::new(last)]);
+        table.add_row(cells.collect::<Vec<Cell>>());
     }
     table.trim_fmt()
 }

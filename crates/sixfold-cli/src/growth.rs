@@ -51,7 +51,10 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     };
     let report = measure(&settings, &launching, &Bar::new())?;
     print(&report, &mut session.text);
-    session.finish(with_command(report, false).into())
+    session.finish(
+        with_command(report, false).into(),
+        arguments.launching.keep_going,
+    )
 }
 
 /// Prints what is known before the measurement: the shape, its sizes, and the backends that cannot

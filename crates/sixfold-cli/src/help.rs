@@ -36,7 +36,10 @@ const GROUPS: [(&str, &[&str]); 6] = [
         "See how structures work",
         &["explore", "tables", "trace", "lessons"],
     ),
-    ("Saved results", &["report", "compare", "rerun", "merge"]),
+    (
+        "Saved results",
+        &["report", "compare", "history", "rerun", "merge"],
+    ),
     (
         "Meshes",
         &[

@@ -43,7 +43,7 @@
 //! | code | means |
 //! |---|---|
 //! | 0 | success |
-//! | 1 | negative answer: no backend qualifies, a figure is slower, results differ, a launch died, or a file does not keep a repair |
+//! | 1 | negative answer: no backend qualifies, a figure is slower, results differ, a part cannot be measured (see `--keep-going`), or a file does not keep a repair |
 //! | 2 | wrong usage or unusable input |
 //! | 3 | not supported: none of the selected backends can hold the mesh |
 //! | 4 | interrupted; finished results are kept |
@@ -63,6 +63,7 @@ mod free_memory;
 mod generate;
 mod growth;
 mod help;
+mod history;
 mod inspect;
 mod launches;
 mod left_out;
@@ -155,6 +156,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),
         Ok(Some(Command::Report(arguments))) => many::draw(&arguments),
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
+        Ok(Some(Command::History(arguments))) => history::run(&arguments),
         Ok(Some(Command::Rerun(arguments))) => rerun::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Distance(arguments))) => distance::run(&arguments),

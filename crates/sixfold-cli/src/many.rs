@@ -7,7 +7,6 @@ mod merge;
 mod meshes;
 mod pooled_table;
 
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,8 +20,7 @@ use crate::failure::Failure;
 use crate::launches::{Launching, Part};
 use crate::listed_folder::ListedFolder;
 use crate::load;
-use crate::measure::{Session, command_line, exit_code, warn_of_debug_build, with_command};
-use crate::mesh_files::shown;
+use crate::measure::{Session, command_line, measured_code, warn_of_debug_build, with_command};
 use crate::mesh_picture::with_picture;
 use crate::paper;
 use crate::progress::Bar;
@@ -130,7 +128,8 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         written?;
         return Err(failure_of_all(&results.failures));
     }
-    exit_code(written, &results, interrupted)
+    let keep_going = arguments.launching.keep_going;
+    measured_code(written, &results, interrupted, keep_going)
 }
 
 /// Measures one lab of a report, as a launch.
@@ -161,7 +160,8 @@ pub(crate) fn run_lab(
     };
     let measured = runner.measure(lab, &Bar::new())?;
     let measured = measured.map(|finding| with_command(finding, arguments.triangulate));
-    session.finish(measured.map_or_else(Results::default, Results::from))
+    let results = measured.map_or_else(Results::default, Results::from);
+    session.finish(results, arguments.launching.keep_going)
 }
 
 /// Returns the meshes of the shard without a study.
@@ -237,12 +237,9 @@ impl FolderRun<'_> {
 
     /// Studies one mesh. Returns `None` if interrupted before the first result.
     fn measure_mesh(&self, mesh: &Mesh, position: &str) -> Option<Result<Report, Failed>> {
-        let failed = |kind, reason| {
-            let mesh = mesh.name.clone();
-            Some(Err(Failed { mesh, reason, kind }))
-        };
+        let failed = |failure: &Failure| Some(Err(mesh.not_measured(failure)));
         if let Some(problem) = &mesh.problem {
-            return failed(FailureKind::NotMeasured, problem.clone());
+            return failed(&Failure::usage(problem));
         }
         let own;
         let loaded = match self.loaded {
@@ -252,15 +249,9 @@ impl FolderRun<'_> {
                 &own
             }
         };
-        let study_mesh = match (loaded, &mesh.path) {
-            (Ok(study_mesh), _) => study_mesh,
-            (Err(failure), None) => {
-                return failed(FailureKind::NotMeasured, failure.message.clone());
-            }
-            (Err(failure), Some(path)) => {
-                let reason = without_path(&failure.message, path);
-                return failed(FailureKind::NotMeasured, reason);
-            }
+        let study_mesh = match loaded {
+            Ok(study_mesh) => study_mesh,
+            Err(failure) => return failed(failure),
         };
         let launching = Launching {
             wanted: self.arguments.launching.launches,
@@ -272,11 +263,13 @@ impl FolderRun<'_> {
         match measure(study_mesh, self.settings, &launching, &bar) {
             Ok(report) if report.interrupted && report.results.is_empty() => None,
             Ok(report) => Some(Ok(report)),
-            Err(failure) if failure.is_unsupported() => {
-                failed(FailureKind::NoneHolds, NONE_HOLDS.into())
-            }
+            Err(failure) if failure.is_unsupported() => Some(Err(Failed {
+                mesh: mesh.name.clone(),
+                reason: NONE_HOLDS.into(),
+                kind: FailureKind::NoneHolds,
+            })),
             Err(_) if self.stop.load(Ordering::Relaxed) => None,
-            Err(failure) => failed(FailureKind::NotMeasured, failure.message),
+            Err(failure) => failed(&failure),
         }
     }
 }
@@ -294,17 +287,6 @@ fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
         true => with_picture(study_mesh),
         false => study_mesh,
     })
-}
-
-/// Removes the path from a message, because the list already shows the path.
-fn without_path(message: &str, path: &Path) -> String {
-    let Some(rest) = message.strip_prefix(&shown(path)) else {
-        return message.to_owned();
-    };
-    match rest.strip_prefix(": ") {
-        Some(rest) => rest.to_owned(),
-        None => format!("line {}", rest.trim_start_matches(':')),
-    }
 }
 
 fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -> String {

@@ -6,8 +6,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use sixfold_report::ReportPage;
 use sixfold_results::numbers::counted;
-use sixfold_results::{Agreement, Finding, Policy, Report, ResultRow, Results};
+use sixfold_results::{Agreement, FailureKind, Finding, Policy, Report, ResultRow, Results};
 use sixfold_study::StudyMesh;
 
 use crate::arguments::ResultFiles;
@@ -15,11 +16,11 @@ use crate::baselines::Baselines;
 use crate::failure::Failure;
 use crate::launches::{self, Launch};
 use crate::mesh_picture::with_picture;
-use crate::output::{Output, check_outputs, is_stdout};
+use crate::output::{Output, check_outputs, uses_stdout};
 use crate::progress::{INTERRUPTED, interrupt_flag};
 use crate::text::{TextOutput, print_notice, print_stderr, take_notices};
 
-/// The exit code if backends found different results for the same work, or if a launch died.
+/// The exit code if backends found different results for the same work, or if a part could not be measured.
 const MISMATCH: u8 = 1;
 
 /// A command that writes results, between the opening of its files and the writing of the results.
@@ -38,6 +39,7 @@ struct OpenFiles {
     json: Option<Output>,
     csv: Option<Output>,
     samples_csv: Option<Output>,
+    markdown: Option<Output>,
 }
 
 impl Session {
@@ -65,22 +67,20 @@ impl Session {
                     json: Output::open_if(Some(&PathBuf::from("-")))?,
                     csv: None,
                     samples_csv: None,
+                    markdown: None,
                 },
             });
         }
-        let uses_stdout = files
-            .options()
-            .iter()
-            .any(|(_, path)| path.is_some_and(|p| is_stdout(p)));
         Ok(Self {
             stop,
-            text: TextOutput::new(!uses_stdout),
+            text: TextOutput::new(!uses_stdout(&files.options())),
             tags: files.tags.clone(),
             baselines: Baselines::open(files)?,
             files: OpenFiles {
                 json: Output::open_if(files.json.as_ref())?,
                 csv: Output::open_if(files.csv.as_ref())?,
                 samples_csv: Output::open_if(files.samples_csv.as_ref())?,
+                markdown: Output::open_if(files.markdown.as_ref())?,
             },
         })
     }
@@ -94,10 +94,14 @@ impl Session {
     }
 
     /// Prints the remaining text, writes the files, and returns the exit code of the results.
-    pub(crate) fn finish(self, mut results: Results) -> Result<ExitCode, Failure> {
+    pub(crate) fn finish(
+        self,
+        mut results: Results,
+        keep_going: bool,
+    ) -> Result<ExitCode, Failure> {
         let interrupted = results.is_interrupted();
         let written = self.write(&mut results);
-        exit_code(written, &results, interrupted)
+        measured_code(written, &results, interrupted, keep_going)
     }
 
     /// Prints the remaining text, adds the notices and the tags to the results, compares them with the baseline, and
@@ -113,6 +117,7 @@ impl Session {
             json,
             csv,
             samples_csv,
+            markdown,
         } = self.files;
         let mut done = self.text.finish().and(self.baselines.save(results));
         if let Some(output) = json {
@@ -126,6 +131,10 @@ impl Session {
         }
         if let Some(output) = samples_csv {
             done = done.and(output.finish(|writer| results.write_samples_csv(writer)));
+        }
+        if let Some(output) = markdown {
+            let tables = ReportPage::new(results, &command_line()).markdown_tables();
+            done = done.and(output.finish(|writer| writer.write_all(tables.as_bytes())));
         }
         done
     }
@@ -202,6 +211,72 @@ pub(crate) fn exit_code(
         true => ExitCode::from(MISMATCH),
         false => code,
     })
+}
+
+/// Prints the final messages of a command that measured, as [`exit_code`] does, and returns its exit code. If a
+/// part could not be measured, the results lack it: this is an error, or a note if `keep_going` is set.
+pub(crate) fn measured_code(
+    written: Result<(), Failure>,
+    results: &Results,
+    interrupted: bool,
+    keep_going: bool,
+) -> Result<ExitCode, Failure> {
+    let code = exit_code(written, results, interrupted)?;
+    let lacking = lacking(results);
+    if interrupted || lacking.is_empty() {
+        return Ok(code);
+    }
+    for (what, remedy) in lacking {
+        print_stderr(&match keep_going {
+            true => format!("note: {what}"),
+            false => format!(
+                "error: {what}: {remedy}. The other results are complete; with --keep-going, this is no error"
+            ),
+        });
+    }
+    Ok(match keep_going {
+        true => code,
+        false => ExitCode::from(MISMATCH),
+    })
+}
+
+/// Maximum number of meshes that a message names.
+const NAMED: usize = 5;
+
+/// Returns what could not be measured, each with its remedy.
+fn lacking(results: &Results) -> Vec<(String, String)> {
+    let mut lacking = Vec::new();
+    let failed = results.failures.iter();
+    let failed = failed.filter(|failed| failed.kind == FailureKind::NotMeasured);
+    let failed: Vec<&str> = failed.map(|failed| failed.mesh.as_str()).collect();
+    if !failed.is_empty() {
+        let mut names = failed[..failed.len().min(NAMED)].join(", ");
+        if failed.len() > NAMED {
+            names += &format!(" and {} more", failed.len() - NAMED);
+        }
+        lacking.push((
+            format!("not measured: {names}"),
+            "repair the files, for the reasons in the notes above, or leave them out".into(),
+        ));
+    }
+    for study in results.studies() {
+        let programs = study.backends.iter().filter_map(|backend| {
+            let failed = backend.external.as_ref()?.failed.as_ref()?;
+            Some((&backend.name, failed))
+        });
+        lacking.extend(programs.map(|(name, why)| {
+            let what = format!("{}: results of {name} are missing: {why}", study.mesh.name);
+            (
+                what,
+                format!("correct the program, or leave out --external {name}"),
+            )
+        }));
+    }
+    if launches::has_died() {
+        let what = "a launch is missing, for the reason in the note above";
+        lacking.push((what.into(), "measure again".into()));
+    }
+    lacking
 }
 
 /// Returns the exit code without regard to external programs, and prints the message about different

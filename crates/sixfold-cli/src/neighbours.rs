@@ -50,7 +50,10 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     bar.clear();
     let report: NeighboursReport = report?;
     print(&report, &mut session.text);
-    session.finish(with_command(report, false).into())
+    session.finish(
+        with_command(report, false).into(),
+        arguments.launching.keep_going,
+    )
 }
 
 fn print(report: &NeighboursReport, text: &mut TextOutput) {

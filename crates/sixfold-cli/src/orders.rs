@@ -46,7 +46,10 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     };
     let report = measure(&study_mesh, &settings, &launching, &Bar::new())?;
     print(&report, &mut session.text);
-    session.finish(with_command(report, arguments.triangulate).into())
+    session.finish(
+        with_command(report, arguments.triangulate).into(),
+        arguments.launching.keep_going,
+    )
 }
 
 /// Measures the mesh in all orders, if there is enough free memory: in this process, or in several launches.

@@ -40,6 +40,12 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// Returns whether an option writes to standard output.
+pub(crate) fn uses_stdout(outputs: &[(&str, Option<&PathBuf>)]) -> bool {
+    let mut paths = outputs.iter().filter_map(|(_, path)| *path);
+    paths.any(|path| is_stdout(path))
+}
+
 /// Returns an error if an output would overwrite `input`. `what` describes the input.
 pub(crate) fn check_not_overwritten(
     what: &str,

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_results::{BreakEven, OwnBytes, OwnData, PickReport, Ranked};
+use sixfold_results::{BreakEven, Failed, OwnBytes, OwnData, PickReport, Ranked, Results};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths.clone(), &arguments.files, arguments.heap)?;
-    let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
+    let (study_meshes, failed) = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
     let study_meshes: Vec<StudyMesh> = drawn.collect();
     let settings = PickSettings {
@@ -70,7 +70,9 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let report: PickReport = report?;
     print(&report, &mut session.text);
     let none_qualifies = report.ranking.is_empty() && !report.interrupted;
-    let code = session.finish(with_command(report, arguments.triangulate).into())?;
+    let mut results = Results::from(with_command(report, arguments.triangulate));
+    results.add_failures(failed);
+    let code = session.finish(results, arguments.launching.keep_going)?;
     if none_qualifies {
         print_stderr(
             "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the \
@@ -108,15 +110,15 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         read: arguments.read,
         triangulate: arguments.triangulate,
         trace: Some(path),
-        launches: arguments.launching.launches,
+        launching: arguments.launching,
         files: &arguments.files,
         limits: Limits::new(settings.effort, default_memory_limit()),
     };
     measurement.run()
 }
 
-/// Reads the meshes. Without a path, a mesh is the built-in mesh. If one of several cannot be read,
-/// prints a note and continues.
+/// Reads the meshes. Without a path, a mesh is the built-in mesh. Of several, those that cannot be read are
+/// noted and returned as the second list.
 ///
 /// # Errors
 ///
@@ -125,26 +127,29 @@ pub(crate) fn study_meshes(
     meshes: &[Mesh],
     files: ReadFiles,
     triangulate: bool,
-) -> Result<Vec<StudyMesh>, Failure> {
+) -> Result<(Vec<StudyMesh>, Vec<Failed>), Failure> {
     let read = |mesh: &Mesh| match (&mesh.path, &mesh.problem) {
         (None, Some(problem)) => Err(Failure::usage(format!("{}: {problem}", mesh.name))),
         (path, _) => load::mesh_or_built_in(path.as_deref(), files, false, triangulate),
     };
     if let [only] = meshes {
-        return Ok(vec![read(only)?]);
+        return Ok((vec![read(only)?], Vec::new()));
     }
-    let mut loaded = Vec::new();
+    let (mut loaded, mut failed) = (Vec::new(), Vec::new());
     for mesh in meshes {
         match read(mesh) {
             Ok(study_mesh) => loaded.push(study_mesh),
-            Err(failure) => print_notice(&format!("note: not measured: {}", failure.message)),
+            Err(failure) => {
+                print_notice(&format!("note: not measured: {}", failure.message));
+                failed.push(mesh.not_measured(&failure));
+            }
         }
     }
     match loaded.is_empty() {
         true => Err(Failure::usage(
             "none of the meshes can be measured: correct the files that the notes above name",
         )),
-        false => Ok(loaded),
+        false => Ok((loaded, failed)),
     }
 }
 

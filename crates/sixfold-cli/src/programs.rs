@@ -14,13 +14,13 @@ use std::time::{Duration, Instant};
 use clap::{CommandFactory, FromArgMatches};
 use sixfold::UnknownName;
 use sixfold_results::numbers::{bytes, counted, figure};
-use sixfold_results::{Finding, PickReport, Results};
+use sixfold_results::{Failed, Finding, PickReport, Results};
 use sixfold_study::{
     ChildTask, Effort, Isolation, ProgramSettings, StudyMesh, Suite, SuiteProgram, free_memory,
     serve_program,
 };
 
-use crate::arguments::{Programs, ReadFiles, ResultFiles};
+use crate::arguments::{LaunchArgs, Programs, ReadFiles, ResultFiles};
 use crate::failure::Failure;
 use crate::free_memory::used_memory;
 use crate::help::fit_to_width;
@@ -92,10 +92,13 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
         read: arguments.read,
         triangulate: arguments.triangulate,
         trace: None,
-        launches: match arguments.isolate {
+        launching: match arguments.isolate {
             // Each structure has a process of its own, and a structure that fails would fail in each launch.
-            true => Some(NonZeroU32::MIN),
-            false => arguments.launching.launches,
+            true => LaunchArgs {
+                launches: Some(NonZeroU32::MIN),
+                ..arguments.launching
+            },
+            false => arguments.launching,
         },
         files: &arguments.files,
         limits: Limits {
@@ -151,9 +154,9 @@ fn after_help(names: &[&str]) -> String {
         "Programs: {}\n\nLaunches: Fresh processes of this command measure one after the other, each all \
          programs. What\nthey print is not shown. If a program does not end or uses too much memory, \
          its launch is the last\none. If a program crashes, its launch is left out.\n\nExit codes: 0 success; \
-         1 no structure qualifies for a program, results differ between structures,\nor a launch is \
-         left out; 2 wrong usage or unusable input, or all launches are left out;\n4 interrupted, or \
-         a program did not end; finished results are kept.",
+         1 no structure qualifies for a program, results differ between structures,\na launch is \
+         left out, or a mesh of several cannot be read; 2 wrong usage or unusable input, or all launches\nare left out; \
+         4 interrupted, or a program did not end; finished results are kept.",
         names.join(", ")
     )
 }
@@ -167,8 +170,7 @@ pub(crate) struct Measurement<'a> {
     pub(crate) triangulate: bool,
     /// The file with the calls of the program, if it is a trace.
     pub(crate) trace: Option<&'a Path>,
-    /// The number of launches; `None` for as many as the budget holds.
-    pub(crate) launches: Option<NonZeroU32>,
+    pub(crate) launching: LaunchArgs,
     pub(crate) files: &'a ResultFiles,
     pub(crate) limits: Limits,
 }
@@ -179,12 +181,12 @@ impl Measurement<'_> {
         let meshes = find_meshes(self.meshes, &mut |note| print_notice(note))?;
         let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
         let mut session = Session::open(paths.clone(), self.files, self.settings.heap)?;
-        let study_meshes = pick::study_meshes(&meshes, self.read, self.triangulate)?;
+        let (study_meshes, failed) = pick::study_meshes(&meshes, self.read, self.triangulate)?;
         let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
         let study_meshes: Vec<StudyMesh> = drawn.collect();
         let stop = Arc::clone(&session.stop);
         let launching = Launching {
-            wanted: self.launches,
+            wanted: self.launching.launches,
             paths: paths.chain(self.trace).collect(),
             part: None,
             stop: &stop,
@@ -203,7 +205,7 @@ impl Measurement<'_> {
                 .text
                 .print_line(&hanging_indent("Trace:    ", &line));
         }
-        let kept = Kept::new(session);
+        let kept = Kept::new(session, failed, self.launching.keep_going);
         let bar = Bar::new();
         if plan.is_here() {
             self.measure_here(&study_meshes, &kept, &bar, &stop)?;
@@ -263,6 +265,10 @@ struct KeptState {
     /// `None` after the results were written.
     session: Option<Session>,
     findings: Vec<Finding>,
+    /// The meshes that could not be read.
+    failed: Vec<Failed>,
+    /// Whether it is no error if a part cannot be measured.
+    keep_going: bool,
     none_qualifies: Vec<String>,
     /// The current step, such as `geodesics: measuring run on half-edge`, and its start.
     step: String,
@@ -316,10 +322,12 @@ impl Limits {
 }
 
 impl Kept {
-    fn new(session: Session) -> Self {
+    fn new(session: Session, failed: Vec<Failed>, keep_going: bool) -> Self {
         Self(Arc::new(Mutex::new(KeptState {
             session: Some(session),
             findings: Vec::new(),
+            failed,
+            keep_going,
             none_qualifies: Vec::new(),
             step: "loading".into(),
             step_start: Instant::now(),
@@ -361,9 +369,10 @@ impl Kept {
             for finding in std::mem::take(&mut kept.findings) {
                 results.add(finding);
             }
+            results.add_failures(std::mem::take(&mut kept.failed));
             results
         };
-        let code = session.finish(results)?;
+        let code = session.finish(results, kept.keep_going)?;
         if kept.none_qualifies.is_empty() || launches::has_ended_early() {
             return Ok(code);
         }

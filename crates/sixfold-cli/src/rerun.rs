@@ -18,13 +18,14 @@ use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::INTERRUPTED;
 use crate::text::{TextOutput, hanging_indent, sanitize};
 
-/// The exit code if a conclusion is reversed, or if results differ between backends.
+/// The exit code if a conclusion is reversed, or if results differ between backends or are missing.
 const REVERSED: u8 = 1;
 /// Options with a value that are not repeated: those that name files to write, and those that are only for a report.
-const LEFT_OUT: [&str; 9] = [
+const LEFT_OUT: [&str; 10] = [
     "--json",
     "--csv",
     "--samples-csv",
+    "--markdown",
     "--report",
     "--figures",
     "--save-baseline",
@@ -49,12 +50,12 @@ pub(crate) fn run(arguments: &Rerun) -> Result<ExitCode, Failure> {
         print_environment(command.run, &mut text);
     }
     let mut after = Results::default();
-    let mut has_mismatch = false;
+    let mut is_unsound = false;
     for Repeated { words, .. } in &commands {
         let line = shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default();
         text.print_line(&hanging_indent("running ", &sanitize(&line)));
         let (results, code) = measure(words)?;
-        has_mismatch |= code == REVERSED;
+        is_unsound |= code == REVERSED;
         results
             .findings
             .into_iter()
@@ -73,7 +74,7 @@ pub(crate) fn run(arguments: &Rerun) -> Result<ExitCode, Failure> {
     }
     let reversed = found.iter().any(|c| matches!(c.fate, Fate::Reversed(_)));
     Ok(match () {
-        () if reversed || has_mismatch => ExitCode::from(REVERSED),
+        () if reversed || is_unsound => ExitCode::from(REVERSED),
         () if interrupted => ExitCode::from(INTERRUPTED),
         () => ExitCode::SUCCESS,
     })

@@ -14,7 +14,7 @@ use crate::left_out::left_out_notes;
 use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::many;
-use crate::measure::{Session, command_line, exit_code, warn_of_debug_build, with_command};
+use crate::measure::{Session, command_line, measured_code, warn_of_debug_build, with_command};
 use crate::paper;
 use crate::progress::Bar;
 use crate::results_table::results_table;
@@ -100,7 +100,9 @@ fn run_single(
             let mut results = finding(report, arguments).into();
             let written = session.write(&mut results);
             let written = written.and(paper::write_if(paper, &results, &command_line()));
-            exit_code(written, &results, results.is_interrupted())
+            let interrupted = results.is_interrupted();
+            let keep_going = arguments.launching.keep_going;
+            measured_code(written, &results, interrupted, keep_going)
         }
         // If every backend refuses the mesh, the list of reasons is the result.
         Err(failure) if failure.is_unsupported() => {

@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     };
     let why = measure(&study_mesh, &settings, &launching, &Bar::new())?;
     print(&why, !arguments.relations.is_empty(), &mut session.text);
-    session.finish(with_command(why, arguments.triangulate).into())
+    session.finish(with_command(why, arguments.triangulate).into(), false)
 }
 
 /// Counts reads, and measures times if the settings say how: in this process, or in several launches, which count the

@@ -157,8 +157,15 @@ fn a_failing_program_is_reported_and_the_study_continues() {
         ("answers twice", &[], "without a request"),
     ] {
         let (sixfold, run) = study_with_program(mode, more);
-        assert_eq!(run.code, Some(0), "{mode}: {run:?}");
+        // A program may refuse a mesh.
+        let code = if mode == "refuses" { 0 } else { 1 };
+        assert_eq!(run.code, Some(code), "{mode}: {run:?}");
         assert!(!run.stderr.contains("panicked"), "{mode}: {run:?}");
+        let missing = run.stderr.lines().last().unwrap_or_default();
+        let names = missing.contains("error: t.obj: results of other are missing: ")
+            && missing.contains(message)
+            && missing.contains("leave out --external other");
+        assert_eq!(names, mode != "refuses", "{mode}: {run:?}");
         let unbroken = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(unbroken.contains(message), "{mode}: {run:?}");
         let report = report(&sixfold);
@@ -172,6 +179,21 @@ fn a_failing_program_is_reported_and_the_study_continues() {
         );
         assert_eq!(sixfold.names(), ["s.json", "t.obj"], "{mode}");
     }
+}
+
+#[test]
+fn results_of_a_program_that_fails_in_one_launch_are_incomplete() {
+    if !has_python() {
+        return;
+    }
+    let more = ["--launches", "2", "--keep-going"];
+    let (sixfold, run) = study_with_program("crashes later", &more);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let note =
+        "note: t.obj: results of other are missing: it ended (exit status: 1): out of luck\n";
+    assert!(run.stderr.ends_with(note), "{run:?}");
+    let failed = &report(&sixfold)["backends"]["other"]["external"]["failed"];
+    assert_eq!(failed, "it ended (exit status: 1): out of luck");
 }
 
 #[test]
@@ -257,6 +279,6 @@ fn invalid_commands_are_refused_before_anything_is_measured() {
     sixfold.file("t.obj", TETRAHEDRON);
     let no_program = "a=/no/such {mesh}";
     let run = sixfold.run(&["study", "t.obj", "--rounds", "2", "--external", no_program]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(run.code, Some(1), "{run:?}");
     assert!(run.stdout.contains("cannot be started"), "{run:?}");
 }

@@ -47,6 +47,7 @@ fn help() {
         ("help_distance.txt", &["distance", "--help"]),
         ("help_memory.txt", &["memory", "--help"]),
         ("help_compare.txt", &["compare", "--help"]),
+        ("help_history.txt", &["history", "--help"]),
         ("help_merge.txt", &["merge", "--help"]),
         ("help_report.txt", &["report", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),

@@ -435,6 +435,8 @@ fn a_launch_that_is_killed_is_named_and_left_out() {
             .contains("launch 2 of 3 is left out: it ended with signal: 9"),
         "{run:?}"
     );
+    let missing = "error: a launch is missing, for the reason in the note above: measure again.";
+    assert!(run.stderr.contains(missing), "{run:?}");
     let all = document(&sixfold, "all.json");
     assert_eq!(launches_of_rows(&all), [2; 4]);
     assert!(

@@ -10,6 +10,7 @@ mod formats;
 mod geometry;
 mod golden;
 mod help_texts;
+mod history;
 mod interrupt;
 mod json_csv;
 mod launches;

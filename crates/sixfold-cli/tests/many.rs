@@ -25,8 +25,9 @@ fn scans() -> Sixfold {
     sixfold
 }
 
+/// Studies the meshes that can be read.
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
-    let mut arguments = vec!["study", "scans"];
+    let mut arguments = vec!["study", "scans", "--keep-going"];
     arguments.extend(QUICK_ARGUMENTS);
     arguments.extend(more);
     sixfold.run(&arguments)
@@ -64,8 +65,15 @@ fn study_files(sixfold: &Sixfold, folder: &str) -> Vec<PathBuf> {
 #[test]
 fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
     let sixfold = scans();
-    let run = study(&sixfold, &["--report", "out", "--json", "-"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let arguments = [
+        &["study", "scans", "--report", "out", "--json", "-"],
+        &QUICK_ARGUMENTS[..],
+    ];
+    let run = sixfold.run(&arguments.concat());
+    assert_eq!(run.code, Some(1), "{run:?}");
+    let last = "error: not measured: scans/broken.obj: repair the files, for the reasons in the notes above, or leave \
+                them out. The other results are complete; with --keep-going, this is no error\n";
+    assert!(run.stderr.ends_with(last), "{}", run.stderr);
     let report = results(&sixfold, "out");
     let piped: Value = serde_json::from_str(&run.stdout).expect("JSON alone");
     assert_eq!(report, piped);
@@ -114,6 +122,8 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
 
     let shown = study(&sixfold, &[]);
     assert_eq!(shown.code, Some(0), "{shown:?}");
+    let last = "note: not measured: scans/broken.obj\n";
+    assert!(shown.stderr.ends_with(last), "{}", shown.stderr);
     for part in [
         "3 meshes of 4 studied",
         "1 of 4: scans/a.OBJ",
@@ -356,7 +366,7 @@ fn places_without_meshes_do_not_stop_the_others() {
     fs::create_dir(sixfold.folder().join("prints")).expect("a folder");
     sixfold.file("prints/part.FBX", "text");
     sixfold.file("scans/b.x3d", "text");
-    let rounds = ["--rounds", "2", "--operations", "boundary"];
+    let rounds = ["--rounds", "2", "--operations", "boundary", "--keep-going"];
     let places = ["study", "empty", "prints", "scans/a.OBJ"];
     let run = sixfold.run(&[&places[..], &rounds].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -421,6 +431,7 @@ fn an_interrupted_study_can_be_resumed() {
         "face_vertices",
         "--report",
         "out",
+        "--keep-going",
     ];
     let run = sixfold.run_interrupted(&arguments, "INT", "2 of 4");
     assert!(run.stdout.contains("not studied yet"), "{run:?}");

@@ -123,8 +123,28 @@ fn meshes_that_cannot_be_read_are_left_out() {
     std::fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     sixfold.file("mine.toml", MINE);
     let arguments = ["pick", "empty", "missing.obj", "broken.obj", "grid.obj"];
-    let options = ["--workload", "mine.toml", "--rounds", "8"];
-    let run = run_ok(&sixfold, &[&arguments[..], &options].concat());
+    let options = [
+        "--workload",
+        "mine.toml",
+        "--rounds",
+        "8",
+        "--json",
+        "p.json",
+    ];
+    let run = sixfold.run(&[&arguments[..], &options].concat());
+    assert_eq!(run.code, Some(1), "{run:?}");
+    let last = run.stderr.lines().last().unwrap_or_default();
+    assert!(
+        last.starts_with("error: not measured: empty, missing.obj, broken.obj: repair the files"),
+        "{run:?}"
+    );
+    let document: Value = serde_json::from_str(&text(&sixfold, "p.json")).expect("JSON");
+    assert_eq!(document["failures"][2]["mesh"], "broken.obj");
+    assert_eq!(document["planned"], Value::Array(Vec::new()));
+    let kept = sixfold.run(&[&arguments[..], &options, &["--keep-going"]].concat());
+    assert_eq!(kept.code, Some(0), "{kept:?}");
+    let last = "note: not measured: empty, missing.obj, broken.obj\n";
+    assert!(kept.stderr.ends_with(last), "{kept:?}");
     for name in ["empty: no mesh file", "missing.obj", "broken.obj"] {
         let note = format!("note: not measured: {name}");
         assert!(run.stderr.contains(&note), "{note}: {}", run.stderr);
@@ -226,8 +246,11 @@ fn pick_continues_after_a_mesh_that_cannot_be_read() {
     sixfold.grid("a.obj", 8);
     sixfold.grid("c.obj", 9);
     sixfold.file("b.obj", "v 0 0 0\nf 1 2 3\n");
-    let arguments = ["pick", "a.obj", "b.obj", "c.obj", "--rounds", "2"];
-    let run = run_ok(&sixfold, &arguments);
+    let meshes = ["pick", "a.obj", "b.obj", "c.obj"];
+    let run = run_ok(
+        &sixfold,
+        &[&meshes[..], &["--rounds", "2", "--keep-going"]].concat(),
+    );
     let note = "note: not measured: b.obj:2: face names vertex 2";
     assert!(run.stderr.contains(note), "{run:?}");
     for mesh in ["a.obj", "c.obj"] {

@@ -295,3 +295,60 @@ fn memory_and_counts_have_pages() {
         assert!(pages[0].contains("half-edge"));
     }
 }
+
+/// The tables of a Markdown file have the same number of cells in each row, and names of meshes are escaped.
+#[test]
+fn results_are_written_as_markdown() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("a_b#1.obj", 8);
+    let study = ["study", "a_b#1.obj", "--rounds", "8", "--json", "a.json"];
+    let more = ["--operations", "boundary,edge_length", "--markdown", "a.md"];
+    run_ok(&sixfold, &[&study[..], &more].concat());
+    let markdown = text(&sixfold, "a.md");
+    let title = "# Mesh data structures on a\\_b\\#1.obj\n";
+    assert!(markdown.starts_with(title), "{markdown}");
+    assert!(!markdown.contains("]("), "no links to figures: {markdown}");
+    let cells = |line: &str| line.replace("\\|", "").matches('|').count();
+    let lines: Vec<&str> = markdown.lines().collect();
+    let mut tables = lines.chunk_by(|a, b| !a.is_empty() && !b.is_empty());
+    let tables = tables.by_ref().filter(|lines| lines[0].starts_with('|'));
+    let tables: Vec<&[&str]> = tables.collect();
+    for table in &tables {
+        assert!(
+            table.iter().all(|row| cells(row) == cells(table[0])),
+            "{table:?}"
+        );
+    }
+    let header = "|  | structure | × the fastest | 95 % | time | per | remark |";
+    let ranking = tables
+        .iter()
+        .find(|table| table[0] == header)
+        .expect("all times");
+    let of = |operation: &str| {
+        let rows = ranking.iter();
+        rows.filter(|row| row.starts_with(&format!("| {operation} |")))
+            .count()
+    };
+    assert_eq!([of("boundary"), of("edge\\_length")], [6, 6], "{markdown}");
+    // Those that are not the fastest have an interval.
+    assert!(
+        ranking.iter().filter(|row| row.contains(" to ")).count() >= 10,
+        "{ranking:?}"
+    );
+
+    run_ok(&sixfold, &["merge", "a.json", "--markdown", "merged.md"]);
+    assert_eq!(text(&sixfold, "merged.md"), markdown);
+    let pick = ["pick", "a_b#1.obj", "--rounds", "8", "--markdown", "-"];
+    let pick = run_ok(&sixfold, &pick).stdout;
+    assert!(pick.starts_with("# ") && pick.contains(header), "{pick}");
+    let same = run_ok(
+        &sixfold,
+        &["compare", "a.json", "a.json", "--markdown", "-"],
+    )
+    .stdout;
+    assert!(
+        same.starts_with("# What changed: a.json → a.json\n"),
+        "{same}"
+    );
+    assert_eq!(same.matches("| edge\\_length | ").count(), 6, "{same}");
+}

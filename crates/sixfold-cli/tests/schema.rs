@@ -34,6 +34,7 @@ fn written_fields() -> BTreeSet<String> {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     sixfold.file("t.obj", TETRAHEDRON);
+    fs::create_dir(sixfold.folder().join("history")).expect("a folder");
     let commands: [&[&str]; 8] = [
         &[
             "study",
@@ -97,6 +98,12 @@ fn written_fields() -> BTreeSet<String> {
         &sixfold,
         &["compare", "0.json", "other.json", "--json", "c.json"],
     );
+    sixfold.file("history/memory.json", &text(&sixfold, "5.json"));
+    for file in ["0.json", "other.json"] {
+        sixfold.file(&format!("history/{file}"), &text(&sixfold, file));
+    }
+    let history = ["history", "history", "--json", "h.json", "--csv", "h.csv"];
+    run_ok(&sixfold, &history);
     run_ok(&sixfold, &["inspect", "t.obj", "--json", "i.json"]);
     let distance = ["distance", "t.obj", "grid.obj", "--json", "distance.json"];
     run_ok(&sixfold, &distance);
@@ -121,6 +128,7 @@ fn written_fields() -> BTreeSet<String> {
     let documents = [
         "all.json",
         "c.json",
+        "h.json",
         "tables.json",
         "trace.json",
         "edit.json",
@@ -132,7 +140,7 @@ fn written_fields() -> BTreeSet<String> {
     }
     let inspection = parsed(&text(&sixfold, "i.json"));
     fields.extend(inspection.as_object().expect("an object").keys().cloned());
-    for file in ["all.csv", "samples.csv", "tables.csv"] {
+    for file in ["all.csv", "samples.csv", "tables.csv", "h.csv"] {
         let table = text(&sixfold, file);
         let header = table.lines().next().expect("a header");
         fields.extend(header.split(',').map(str::to_owned));

@@ -146,9 +146,9 @@ pub(crate) fn prepare<'a>(
         stop,
     );
     let result = started.and_then(|mut program| Ok((program.handshake()?, program)));
-    let (handshake, program) = match result {
-        Ok((handshake, program)) => (handshake, Some(program)),
-        Err(reason) => (Handshake::from_refusal(reason), None),
+    let (handshake, program, failed) = match result {
+        Ok((handshake, program)) => (handshake, Some(program), None),
+        Err(reason) => (Handshake::from_refusal(reason.clone()), None, Some(reason)),
     };
     let tuned = Program::sets_tunables(heap.policy);
     let own_heap = heap.policy == Policy::Kept && !(tuned && handshake.keeps_pages_if_tuned());
@@ -178,6 +178,7 @@ pub(crate) fn prepare<'a>(
             command: external.command.clone(),
             library: handshake.library.map(|library| sanitize(&library)),
             own_heap,
+            failed,
         }),
     };
     let program = program.filter(|_| report.holds);

@@ -114,7 +114,8 @@ fn place(row: &ResultRow, backends: &[BackendReport]) -> (Option<usize>, Option<
     (operation, backend)
 }
 
-/// Returns the backends of the first launch in which each was built.
+/// Returns the backends of the first launch in which each was built. An external program has failed if it failed in
+/// any launch.
 fn pool_backends(launches: &[Report]) -> Vec<BackendReport> {
     let mut pooled = launches[0].backends.clone();
     for backend in &mut pooled {
@@ -123,6 +124,13 @@ fn pool_backends(launches: &[Report]) -> Vec<BackendReport> {
             .filter_map(|launch| launch.backend(&backend.name));
         if let (None, Some(built)) = (backend.bytes, others.find(|other| other.bytes.is_some())) {
             *backend = built.clone();
+        }
+        let failed = launches.iter().find_map(|launch| {
+            let program = launch.backend(&backend.name)?.external.as_ref()?;
+            program.failed.clone()
+        });
+        if let Some(program) = &mut backend.external {
+            program.failed = failed;
         }
     }
     pooled

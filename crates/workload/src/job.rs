@@ -163,6 +163,10 @@ pub trait TimedBackend {
     fn is_external(&self) -> bool {
         false
     }
+    /// Returns why the backend can run nothing any more: an external program that failed. `None` if it can.
+    fn failure(&self) -> Option<&str> {
+        None
+    }
     /// Returns whether the backend can run an operation on a sample of the elements.
     fn can_sample(&self) -> bool {
         true

@@ -8,9 +8,6 @@ impl Changes {
     /// Returns sentences that describe the changes.
     pub(super) fn describe(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
-        let same = self.count(Verdict::Same);
-        let open = self.count(Verdict::CannotTell);
         if self.rows.is_empty() {
             return vec![match self.bytes.len() {
                 0 => "The files have the same counts of bytes.".into(),
@@ -24,13 +21,11 @@ impl Changes {
                 ),
             }];
         }
+        let verdicts: Vec<Verdict> = self.rows.iter().map(|row| row.verdict).collect();
         sentences.push(format!(
-            "Of {}, {faster} {} faster in the second file, {slower} {} slower, {same} {} equal, and {open} cannot \
-             be told.",
-            counted(self.rows.len(), "measurement", "measurements"),
-            is_or_are(faster),
-            is_or_are(slower),
-            is_or_are(same),
+            "Of {}, {}.",
+            counted(verdicts.len(), "measurement", "measurements"),
+            verdict_counts(&verdicts, "in the second file"),
         ));
         sentences.extend(self.what_would_tell());
         if let Some(overall) = self.overall.filter(|o| o.max(o.recip()) > self.noise) {
@@ -105,7 +100,25 @@ impl Changes {
     }
 }
 
-fn is_or_are(count: usize) -> &'static str {
+/// Counts verdicts in words. `place` says where times are faster.
+pub(crate) fn verdict_counts(verdicts: &[Verdict], place: &str) -> String {
+    let count = |verdict| verdicts.iter().filter(|other| **other == verdict).count();
+    let [faster, slower, same, open] = [
+        Verdict::Faster,
+        Verdict::Slower,
+        Verdict::Same,
+        Verdict::CannotTell,
+    ]
+    .map(count);
+    format!(
+        "{faster} {} faster {place}, {slower} {} slower, {same} {} equal, and {open} cannot be told",
+        is_or_are(faster),
+        is_or_are(slower),
+        is_or_are(same),
+    )
+}
+
+pub(crate) fn is_or_are(count: usize) -> &'static str {
     match count {
         1 => "is",
         _ => "are",

@@ -1,9 +1,10 @@
-//! Arguments of `sixfold orders`, `growth` and `compare`.
+//! Arguments of `sixfold orders`, `growth`, `compare`, `history` and `rerun`.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use sixfold::shapes::Order;
+use sixfold_results::CompareSettings;
 use sixfold_study::GrowthSettings;
 
 use super::{
@@ -67,6 +68,7 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1 or 3
   sixfold compare laptop.json server.json --relative
   sixfold compare before.json after.json --report changes      a page with figures
+  sixfold compare before.json after.json --markdown -          tables for a pull request
 
 Each file has results of any commands that measure. A measurement is the time of one operation on
 one backend, by the same command, on the same mesh and in the same case (order, size or workload).
@@ -104,6 +106,16 @@ pub(crate) struct Compare {
     /// The second results
     #[arg(value_name = "AFTER.json|DIR")]
     pub(crate) after: PathBuf,
+    /// End with exit code 1 if a measurement is slower, 3 if one cannot be told
+    #[arg(long)]
+    pub(crate) fail_if_slower: bool,
+    #[command(flatten)]
+    pub(crate) changes: ChangeArgs,
+}
+
+// How changes are judged and shown.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ChangeArgs {
     /// First divide each ratio by the median of all ratios
     #[arg(long)]
     pub(crate) relative: bool,
@@ -113,9 +125,6 @@ pub(crate) struct Compare {
     /// Show all measurements, including unchanged ones
     #[arg(long)]
     pub(crate) all: bool,
-    /// End with exit code 1 if a measurement is slower, 3 if one cannot be told
-    #[arg(long)]
-    pub(crate) fail_if_slower: bool,
     /// Write a page of the changes, largest first, and its figures to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
@@ -125,6 +134,68 @@ pub(crate) struct Compare {
     /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    /// Write the answer and all tables as Markdown (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) markdown: Option<PathBuf>,
+}
+
+impl ChangeArgs {
+    pub(crate) fn settings(&self) -> CompareSettings {
+        CompareSettings {
+            relative: self.relative,
+            noise: self.noise,
+            ..CompareSettings::default()
+        }
+    }
+
+    /// Returns the options that write, with their paths.
+    pub(crate) fn outputs(&self) -> [(&'static str, Option<&PathBuf>); 4] {
+        [
+            ("--json", self.json.as_ref()),
+            ("--report", self.report.as_ref()),
+            ("--figures", self.figures.as_ref()),
+            ("--markdown", self.markdown.as_ref()),
+        ]
+    }
+}
+
+const HISTORY_EXAMPLES: &str = "Examples:
+  sixfold study bunny.obj --save-baseline $(git rev-parse --short HEAD)      after each commit
+  sixfold history .sixfold
+  sixfold history .sixfold --report history         a page with curves
+  sixfold history nightly --all --csv history.csv
+
+A folder has results of any commands that measure: files of --json, and folders of --report. Other
+files in it are named and left out. The results are shown in the order in which they were measured,
+because they name their commits, but not the times of these commits: measure older commits first.
+
+Each document is compared with the first one, as `compare` does: a measurement counts as slower if
+chance does not explain it. All comparisons together find a change with a probability of at most one
+in 200 if the program did not change. Results of one launch cannot be compared. A document of other
+meshes, or with other --heap or --caches, is compared with documents of its kind; differences of
+machine, program and settings are shown.
+
+Report: report.html needs no network, report.md and figures have the same content, and history.json
+has all data. The folder must be new, empty, or written by --report.
+
+Exit codes: 0 success; 2 wrong usage, no file that can be read, or no two documents that have a
+measurement in common.";
+
+/// Show how times went over saved results, such as one file for each commit.
+///
+/// Reads all results of a folder, and shows which times became longer or shorter beyond chance, and
+/// since when.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = HISTORY_EXAMPLES)]
+pub(crate) struct History {
+    /// Folders of results, such as .sixfold, or single results
+    #[arg(value_name = "DIR|FILE.json", required = true)]
+    pub(crate) results: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) changes: ChangeArgs,
+    /// Write each time in each document as CSV (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
 }
 
 const RERUN_EXAMPLES: &str = "Examples:
@@ -138,7 +209,7 @@ and it is reversed if another one is, beyond chance. Otherwise it cannot be told
 for at its path, beside RESULTS.json, and under --meshes; its content must be that of the results.
 
 Exit codes: 0 no conclusion is reversed; 1 a conclusion is reversed, or results differ between
-backends; 2 wrong usage, a file without results, a command that cannot be repeated, or a mesh that
+backends or are missing; 2 wrong usage, a file without results, a command that cannot be repeated, or a mesh that
 is missing or has changed; 4 interrupted.";
 
 /// Measure saved results again, and say which conclusions stand.

@@ -25,8 +25,9 @@ built. The ratios of several meshes are combined by geometric means.
 Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
 refine.
 
-Exit codes: 0 success; 1 no backend qualifies, or results differ between backends (a fault in
-Sixfold); 2 wrong usage or unusable input; 4 interrupted, finished results are kept.";
+Exit codes: 0 success; 1 no backend qualifies, results differ between backends (a fault in Sixfold),
+or a mesh of several cannot be read or a launch died (the other results are written; with
+--keep-going, this is no error); 2 wrong usage or unusable input; 4 interrupted, finished results are kept.";
 
 const WORKLOADS_EXAMPLES: &str = "Examples:
   sixfold workloads

@@ -16,6 +16,9 @@ pub(crate) struct ResultFiles {
     /// Write the time of each sample as CSV, one per row (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) samples_csv: Option<PathBuf>,
+    /// Write the answer and all tables as Markdown (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) markdown: Option<PathBuf>,
     /// Keep KEY=VALUE in the results; may be repeated
     #[arg(long = "tag", value_name = "KEY=VALUE", value_parser = tag)]
     pub(crate) tags: Vec<(String, String)>,
@@ -47,11 +50,12 @@ fn tag(text: &str) -> Result<(String, String), String> {
 
 impl ResultFiles {
     /// Returns the options with their paths.
-    pub(crate) fn options(&self) -> [(&'static str, Option<&PathBuf>); 3] {
+    pub(crate) fn options(&self) -> [(&'static str, Option<&PathBuf>); 4] {
         [
             ("--json", self.json.as_ref()),
             ("--csv", self.csv.as_ref()),
             ("--samples-csv", self.samples_csv.as_ref()),
+            ("--markdown", self.markdown.as_ref()),
         ]
     }
 }

@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     let folders = [&arguments.report, &arguments.figures];
     if options.iter().all(|(_, path)| path.is_none()) && folders.iter().all(|f| f.is_none()) {
         return Err(Failure::usage(
-            "no output given: use --report DIR, --figures DIR, or --json FILE (- for standard output)",
+            "no output given: use --report DIR, --figures DIR, --markdown FILE, or --json FILE (- for standard output)",
         ));
     }
     for place in &arguments.results {

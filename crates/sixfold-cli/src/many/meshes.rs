@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::mesh_files::shown;
 use crate::text::sanitize;
 use sixfold_results::numbers::counted;
+use sixfold_results::{Failed, FailureKind};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
@@ -21,6 +22,32 @@ pub(crate) struct Mesh {
     pub(crate) path: Option<PathBuf>,
     /// Why there is no mesh at this place: a folder that cannot be listed, or has no mesh.
     pub(crate) problem: Option<String>,
+}
+
+impl Mesh {
+    /// Returns the mesh with the reason why it was not measured. `failure` is that of reading or measuring it.
+    pub(crate) fn not_measured(&self, failure: &Failure) -> Failed {
+        let of_path = || match &self.path {
+            Some(path) => without_path(&failure.message, path),
+            None => failure.message.clone(),
+        };
+        Failed {
+            mesh: self.name.clone(),
+            reason: self.problem.clone().unwrap_or_else(of_path),
+            kind: FailureKind::NotMeasured,
+        }
+    }
+}
+
+/// Removes the path from a message, because a list of failures already shows the path.
+fn without_path(message: &str, path: &Path) -> String {
+    let Some(rest) = message.strip_prefix(&shown(path)) else {
+        return message.to_owned();
+    };
+    match rest.strip_prefix(": ") {
+        Some(rest) => rest.to_owned(),
+        None => format!("line {}", rest.trim_start_matches(':')),
+    }
 }
 
 /// Endings of mesh files that are not read, but that other programs can convert.

@@ -27,7 +27,7 @@ pub(super) fn run(
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     // A mesh that cannot be read must not make one of two meshes the single one.
     let study_meshes = match meshes.len() {
-        1 => pick::study_meshes(&meshes, arguments.read, arguments.triangulate)?,
+        1 => pick::study_meshes(&meshes, arguments.read, arguments.triangulate)?.0,
         _ => Vec::new(),
     };
     let [study_mesh] = &study_meshes[..] else {

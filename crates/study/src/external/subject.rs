@@ -28,8 +28,7 @@ impl<'a> ExternalSubject<'a> {
 
     /// Sends a request that is not timed. After an error, the program is not used again.
     pub(super) fn request(&mut self, run: &'static str, times: u32) -> Result<Response, String> {
-        let program = self.program.as_mut().map_err(|why| why.clone())?;
-        let answer = program.ask(&Request { run, times });
+        let answer = self.running()?.ask(&Request { run, times });
         self.keep_failure(answer)
     }
 
@@ -40,7 +39,7 @@ impl<'a> ExternalSubject<'a> {
         request: &Request,
         clock: &dyn Clock,
     ) -> Result<(Response, Option<Time>), String> {
-        let program = self.program.as_mut().map_err(|why| why.clone())?;
+        let program = self.running()?;
         let before = clock.now();
         let answer = program.ask(request).and_then(|response| {
             let waited = clock.now().wall_ns - before.wall_ns;
@@ -53,9 +52,15 @@ impl<'a> ExternalSubject<'a> {
         self.keep_failure(answer)
     }
 
+    /// Returns the program if it has not failed.
+    fn running(&mut self) -> Result<&mut Program<'a>, String> {
+        let failed = |why: &mut String| format!("it failed earlier: {why}");
+        self.program.as_mut().map_err(failed)
+    }
+
     fn keep_failure<T>(&mut self, answer: Result<T, String>) -> Result<T, String> {
         if let Err(why) = &answer {
-            self.program = Err(format!("it failed earlier: {why}"));
+            self.program = Err(why.clone());
         }
         answer
     }
@@ -94,6 +99,10 @@ impl TimedBackend for ExternalSubject<'_> {
 
     fn is_external(&self) -> bool {
         true
+    }
+
+    fn failure(&self) -> Option<&str> {
+        self.program.as_ref().err().map(String::as_str)
     }
 
     fn can_sample(&self) -> bool {

@@ -18,6 +18,7 @@ use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
 use sixfold_results::{
     BackendRefusal, BackendReport, CacheState, Policy, Report, ResultRow, RunSettings, Samples,
+    sanitize,
 };
 
 use crate::engine::warnings::warnings;
@@ -295,6 +296,18 @@ pub(crate) fn study_on(
         seed: settings.seed,
     };
     let measured = bench.measure(trial, progress);
+    // An interrupted study ends its programs itself.
+    for subject in measured
+        .columns
+        .subjects
+        .iter()
+        .filter(|_| !measured.interrupted)
+    {
+        let mut external = backends.iter_mut().filter(|b| b.name == subject.name());
+        if let Some(external) = external.find_map(|backend| backend.external.as_mut()) {
+            external.failed = subject.failure().map(sanitize);
+        }
+    }
     let results = measured.rows();
     let timer = bench.timer(measured.shortest_ns());
     let mut report = Report {
