@@ -155,6 +155,14 @@ impl RunSettings {
     /// Returns an error if `other` has other settings, because the times of two studies can then
     /// not be pooled.
     pub(crate) fn check_equal(&self, other: &Self) -> Result<(), MergeError> {
+        match self.difference(other) {
+            Some((what, ours, theirs)) => Err(MergeError::OtherSettings { what, ours, theirs }),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the first option in which `other` differs, with the value of each; `None` if the settings are the same.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
         let effort = match (self.rounds, other.rounds) {
             (Some(_), Some(_)) => "--rounds",
             _ => "--budget",
@@ -188,9 +196,9 @@ impl RunSettings {
                     true => none.into(),
                     false => text,
                 });
-                return Err(MergeError::OtherSettings { what, ours, theirs });
+                return Some((what, ours, theirs));
             }
         }
-        Ok(())
+        None
     }
 }

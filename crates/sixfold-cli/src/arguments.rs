@@ -350,7 +350,7 @@ pub(crate) struct EffortArgs {
 // In how many processes to measure, and what it means if a part fails.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LaunchArgs {
-    /// Measure in N fresh processes [default: by the budget, 5 for 20s]
+    /// Measure in N fresh processes [default: by the budget and the work]
     #[arg(long, value_name = "N", value_parser = launch_count, allow_hyphen_values = true)]
     pub(crate) launches: Option<NonZeroU32>,
     /// Exit code 0 also if a part cannot be measured; a note names it

@@ -5,13 +5,14 @@ use std::process::ExitCode;
 use comfy_table::Cell;
 use sixfold_results::{Fit, GrowthReport, ResultRow, SizeReport, Slope};
 use sixfold_study::{
-    GrowthError, GrowthSettings, Progress, SCALABLE_SHAPES, ScalableShape, Settings, StudyError,
+    DEFAULT_OPERATIONS, GrowthError, GrowthSettings, Progress, SCALABLE_SHAPES, ScalableShape,
+    Settings, StudyError,
 };
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches::{self, Launching};
+use crate::launches::{self, Launching, Work};
 use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::default_operations;
@@ -96,7 +97,14 @@ pub(crate) fn measure(
 ) -> Result<GrowthReport, Failure> {
     // A size that cannot be planned is refused by the measurement.
     let sizes = sixfold_study::growth_plan(settings).map_or_else(|_| Vec::new(), |plan| plan.0);
-    let plan = launching.plan(settings.study.effort, sizes.iter().sum())?;
+    let sum: usize = sizes.iter().sum();
+    let work = Work::new(
+        sum / sizes.len().max(1),
+        &settings.study.operations,
+        DEFAULT_OPERATIONS.len(),
+        &settings.study.backends,
+    );
+    let plan = launching.plan(settings.study.effort, work.times(sizes.len()))?;
     check_memory(settings)?;
     let report = plan.measure(None, &|done, what| bar.set(done, what), || {
         let mut show = |at: Progress<'_>| bar.show(at);

@@ -30,13 +30,17 @@ use crate::text::{print_notice, sanitize};
 
 /// The first process looks this often whether it is interrupted.
 const PATIENCE: Duration = Duration::from_millis(200);
-/// Time of a launch on a small mesh by default. Fewer, longer launches would have wider intervals, and in shorter
-/// launches too much of the time is for building and planning.
-const USUAL_S: f64 = 4.0;
+/// Approximate time of a round of one operation on one structure, with its part of the building and planning. A launch
+/// has about one round of a whole study: what differs from launch to launch is more than what differs from round to
+/// round.
+const ENTRY_S: f64 = 0.025;
+/// Least and most time of a launch on a small mesh by default. In shorter launches too much of the time is for building
+/// and planning; of longer ones there would be fewer, with wider intervals.
+const USUAL_S: [f64; 2] = [1.0, 4.0];
 /// Minimum time of a launch on a small mesh.
 const SHORTEST_S: f64 = 0.5;
-/// Maximum number of launches by default. More launches hardly narrow the intervals.
-const MOST_BY_DEFAULT: u32 = 20;
+/// Maximum number of launches by default.
+const MOST_BY_DEFAULT: u32 = 60;
 /// Minimum number of launches by default, if there are several. With two, intervals are three times as wide.
 const FEWEST_BY_DEFAULT: u32 = 3;
 /// Approximate time for reading, checking and building a mesh on all structures, for each face.
@@ -109,6 +113,51 @@ pub(crate) fn seed(seed: u64) -> u64 {
     seed.wrapping_add(u64::from(number))
 }
 
+/// What each launch does.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Work {
+    /// The number of faces of the meshes that are read, and built on all structures.
+    pub(crate) faces: usize,
+    /// The number of operations that are timed in a round, each on each structure; `None` if they may take any time.
+    pub(crate) entries: Option<usize>,
+}
+
+impl Work {
+    /// Returns the work on meshes with `faces` faces together, of `operations` on `backends`. An empty list stands for
+    /// all structures, and for `by_default` operations.
+    pub(crate) fn new<O>(
+        faces: usize,
+        operations: &[O],
+        by_default: usize,
+        backends: &[String],
+    ) -> Self {
+        let or_else = |given: usize, all| if given == 0 { all } else { given };
+        let operations = or_else(operations.len(), by_default);
+        Self {
+            faces,
+            entries: Some(operations * or_else(backends.len(), sixfold::structure_infos().len())),
+        }
+    }
+
+    /// Returns the work on `count` times as many meshes.
+    pub(crate) fn times(self, count: usize) -> Self {
+        Self {
+            faces: count * self.faces,
+            entries: self.entries.map(|entries| count * entries),
+        }
+    }
+
+    /// Returns the approximate time to read and build the meshes, and the usual time of a launch.
+    fn seconds(self) -> [f64; 2] {
+        let set_up_s = SET_UP_S_PER_FACE * self.faces as f64;
+        let [least, most] = USUAL_S;
+        let round_s = self
+            .entries
+            .map_or(most, |entries| ENTRY_S * entries as f64);
+        [set_up_s, round_s.clamp(least, most).max(4.0 * set_up_s)]
+    }
+}
+
 /// What a command launches.
 pub(crate) struct Launching<'p> {
     /// The number of launches that the user wants; `None` for as many as the budget holds.
@@ -122,15 +171,15 @@ pub(crate) struct Launching<'p> {
 }
 
 impl<'p> Launching<'p> {
-    /// Returns the plan to measure `effort` on meshes with `faces` faces together.
+    /// Returns the plan to measure `effort`.
     ///
     /// # Errors
     ///
     /// Returns an error if the budget does not hold the wanted number of launches, or if a mesh cannot be read
     /// again. A lab of a report then has as many launches as its budget holds.
-    pub(crate) fn plan(&self, effort: Effort, faces: usize) -> Result<Plan<'p>, Failure> {
+    pub(crate) fn plan(&self, effort: Effort, work: Work) -> Result<Plan<'p>, Failure> {
         Ok(Plan {
-            count: self.count(effort, faces)?,
+            count: self.count(effort, work)?,
             effort,
             part: self.part.clone(),
             stop: self.stop,
@@ -138,7 +187,7 @@ impl<'p> Launching<'p> {
     }
 
     /// Returns the number of launches.
-    fn count(&self, effort: Effort, faces: usize) -> Result<u32, Failure> {
+    fn count(&self, effort: Effort, work: Work) -> Result<u32, Failure> {
         if Launch::current().is_some() {
             return Ok(1);
         }
@@ -156,12 +205,11 @@ impl<'p> Launching<'p> {
             return Ok(wanted.unwrap_or(1));
         };
         let budget_s = budget.as_secs_f64();
-        let set_up_s = SET_UP_S_PER_FACE * faces as f64;
+        let [set_up_s, usual_s] = work.seconds();
         let fit = |each_s: f64| (budget_s / each_s) as u32;
-        let usual = fit(USUAL_S.max(4.0 * set_up_s)).min(MOST_BY_DEFAULT);
         let Some(wanted) = wanted else {
-            let fewest = FEWEST_BY_DEFAULT;
-            let has_room = fit((USUAL_S / 2.0).max(2.0 * set_up_s)) >= fewest;
+            let (fewest, usual) = (FEWEST_BY_DEFAULT, fit(usual_s).min(MOST_BY_DEFAULT));
+            let has_room = fit(usual_s / 2.0) >= fewest;
             return Ok(if has_room { usual.max(fewest) } else { 1 });
         };
         let most = fit(SHORTEST_S.max(2.0 * set_up_s)).max(1);
@@ -504,42 +552,57 @@ mod tests {
         Effort::Budget(Duration::from_secs_f64(seconds))
     }
 
-    fn count(wanted: Option<u32>, effort: Effort, faces: usize) -> Result<u32, Failure> {
+    const STUDY: Work = Work {
+        faces: 1000,
+        entries: Some(28 * 6),
+    };
+
+    fn count(wanted: Option<u32>, effort: Effort, work: Work) -> Result<u32, Failure> {
         let launching = Launching {
             wanted: wanted.and_then(NonZeroU32::new),
             paths: Vec::new(),
             part: None,
             stop: &AtomicBool::new(false),
         };
-        launching.count(effort, faces)
+        launching.count(effort, work)
     }
 
-    fn by_default(budget_s: f64, faces: usize) -> u32 {
-        count(None, seconds(budget_s), faces).expect("no number was given")
+    fn by_default(budget_s: f64, work: Work) -> u32 {
+        count(None, seconds(budget_s), work).expect("no number was given")
     }
 
     #[test]
-    fn the_budget_and_the_mesh_choose_the_number_of_launches() {
+    fn the_budget_and_the_work_choose_the_number_of_launches() {
         assert_eq!(
-            [1.0, 5.9, 6.0, 11.9].map(|s| by_default(s, 1000)),
+            [1.0, 5.9, 6.0, 11.9].map(|s| by_default(s, STUDY)),
             [1, 1, 3, 3]
         );
-        assert_eq!(
-            [20.0, 60.0, 3600.0].map(|s| by_default(s, 1000)),
-            [5, 15, 20]
-        );
+        let budgets = [20.0, 60.0, 3600.0];
+        assert_eq!(budgets.map(|s| by_default(s, STUDY)), [5, 15, 60]);
+        // Two operations need a launch of a second; what programs need is not known.
+        let named = Work::new(1000, &["build", "boundary"], 28, &[]);
+        assert_eq!(budgets.map(|s| by_default(s, named)), [20, 60, 60]);
+        let program = Work {
+            entries: None,
+            ..STUDY
+        };
+        assert_eq!(budgets.map(|s| by_default(s, program)), [5, 15, 60]);
+        let one = Work::new(1000, &["build"], 28, &["half-edge".into()]);
+        assert_eq!((named.entries, one.entries), (Some(12), Some(1)));
+        assert_eq!(Work::new::<&str>(1000, &[], 28, &[]).entries, STUDY.entries);
         // A million faces need 4 s to be read and built, and a launch should take four times that.
-        assert_eq!(
-            [20.0, 24.0, 80.0].map(|s| by_default(s, 1_000_000)),
-            [1, 3, 5]
-        );
+        let large = Work {
+            faces: 1_000_000,
+            ..STUDY
+        };
+        assert_eq!([20.0, 24.0, 80.0].map(|s| by_default(s, large)), [1, 3, 5]);
         let rounds = Effort::Rounds(NonZeroU32::new(8).expect("above 0"));
-        assert_eq!(count(None, rounds, 1000).ok(), Some(1));
+        assert_eq!(count(None, rounds, STUDY).ok(), Some(1));
     }
 
     #[test]
     fn a_budget_holds_a_limited_number_of_launches() {
-        let wanted = |n| count(Some(n), seconds(2.0), 1000);
+        let wanted = |n| count(Some(n), seconds(2.0), STUDY);
         assert_eq!(wanted(4).ok(), Some(4));
         let refused = wanted(5).expect_err("too many");
         assert_eq!(refused.code, 2);
@@ -549,6 +612,6 @@ mod tests {
             "{message}"
         );
         let rounds = Effort::Rounds(NonZeroU32::MIN);
-        assert_eq!(count(Some(500), rounds, 1000).ok(), Some(500));
+        assert_eq!(count(Some(500), rounds, STUDY).ok(), Some(500));
     }
 }

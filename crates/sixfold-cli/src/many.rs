@@ -21,6 +21,7 @@ use crate::launches::{Launching, Part};
 use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::measure::{Session, command_line, measured_code, warn_of_debug_build, with_command};
+use crate::mesh_files::shown;
 use crate::mesh_picture::with_picture;
 use crate::paper;
 use crate::progress::Bar;
@@ -123,6 +124,12 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
             true => paper.remove_if_empty(),
             false => written = written.and(paper::write_if(Some(paper), &results, &command_line())),
         }
+    }
+    if interrupted && let Some(folder) = &arguments.report {
+        print_notice(&format!(
+            "note: to measure the rest, run the same command with --resume: {} has what is finished",
+            shown(folder)
+        ));
     }
     if none_studied {
         written?;

@@ -10,7 +10,7 @@ use sixfold_study::{NeighboursSettings, Progress};
 use crate::arguments::Neighbours;
 use crate::facts_text::facts_text;
 use crate::failure::Failure;
-use crate::launches::{self, Launching};
+use crate::launches::{self, Launching, Work};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -39,7 +39,9 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
         part: None,
         stop: &session.stop,
     };
-    let plan = launching.plan(settings.effort, study_mesh.polygons.face_count())?;
+    let tasks = &SpatialTask::ALL;
+    let work = Work::new(study_mesh.polygons.face_count(), tasks, tasks.len(), &[]);
+    let plan = launching.plan(settings.effort, work)?;
     let bar = Bar::new();
     let reports = Some(vec![study_mesh.report()]);
     let report = plan.measure(reports, &|done, what| bar.set(done, what), || {

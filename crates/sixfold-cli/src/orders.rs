@@ -11,7 +11,7 @@ use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches::{self, Launching};
+use crate::launches::{self, Launching, Work};
 use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -60,7 +60,13 @@ pub(crate) fn measure(
     bar: &Bar,
 ) -> Result<OrdersReport, Failure> {
     let faces = study_mesh.polygons.face_count();
-    let plan = launching.plan(settings.effort, Order::ALL.len() * faces)?;
+    let work = Work::new(
+        faces,
+        &settings.operations,
+        DEFAULT_OPERATIONS.len(),
+        &settings.backends,
+    );
+    let plan = launching.plan(settings.effort, work.times(Order::ALL.len()))?;
     let needed = sixfold_study::orders_bytes(study_mesh, settings).map_err(Failure::usage)?;
     check_free_memory(
         "the mesh in four orders on each backend",

@@ -12,7 +12,7 @@ use sixfold_study::{
 use crate::arguments::{Pick, ReadFiles};
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::launches::{self, Launch, Launching};
+use crate::launches::{self, Launch, Launching, Work};
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -54,7 +54,15 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         stop: &session.stop,
     };
     let faces = study_meshes.iter().map(|mesh| mesh.polygons.face_count());
-    let plan = launching.plan(settings.effort, faces.sum())?;
+    // The operations of the mix are timed together and one by one, and building.
+    let timed = settings.workload.mix.len() + 2;
+    let work = Work::new::<Part>(
+        faces.sum::<usize>() / study_meshes.len(),
+        &[],
+        timed,
+        &settings.backends,
+    );
+    let plan = launching.plan(settings.effort, work.times(study_meshes.len()))?;
     warn_of_debug_build();
     if Launch::current().is_none() {
         print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);

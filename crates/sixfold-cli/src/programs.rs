@@ -24,7 +24,7 @@ use crate::arguments::{LaunchArgs, Programs, ReadFiles, ResultFiles};
 use crate::failure::Failure;
 use crate::free_memory::used_memory;
 use crate::help::fit_to_width;
-use crate::launches::{self, Launching};
+use crate::launches::{self, Launching, Work};
 use crate::load;
 use crate::many::find_meshes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -193,7 +193,11 @@ impl Measurement<'_> {
         };
         let programs = self.suite.programs();
         let faces = study_meshes.iter().map(|mesh| mesh.polygons.face_count());
-        let plan = launching.plan(self.settings.effort, programs.len() * faces.sum::<usize>())?;
+        let work = Work {
+            faces: programs.len() * faces.sum::<usize>(),
+            entries: None,
+        };
+        let plan = launching.plan(self.settings.effort, work)?;
         warn_of_debug_build();
         print_meshes(&study_meshes, &mut session.text);
         for program in programs.iter().filter(|p| p.own_ns() != 0.0) {

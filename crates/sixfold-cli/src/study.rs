@@ -9,7 +9,7 @@ use sixfold_study::{Operation, Progress, Settings, StudyError, StudyMesh};
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
-use crate::launches::{self, Launch, Launching, Part};
+use crate::launches::{self, Launch, Launching, Part, Work};
 use crate::left_out::left_out_notes;
 use crate::listed_folder::ListedFolder;
 use crate::load;
@@ -121,7 +121,13 @@ pub(crate) fn measure(
     launching: &Launching<'_>,
     bar: &Bar,
 ) -> Result<Report, Failure> {
-    let plan = launching.plan(settings.effort, study_mesh.polygons.face_count())?;
+    let work = Work::new(
+        study_mesh.polygons.face_count(),
+        &settings.operations,
+        Operation::ALL.len(),
+        &settings.backends,
+    );
+    let plan = launching.plan(settings.effort, work)?;
     let meshes = Some(vec![study_mesh.report()]);
     let report = plan.measure(meshes, &|done, what| bar.set(done, what), || {
         let mut show = |at: Progress<'_>| bar.show(at);

@@ -9,7 +9,7 @@ use sixfold_study::{Progress, Settings, StudyError, StudyMesh, Timing, WhySettin
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
-use crate::launches::{self, Launching};
+use crate::launches::{self, Launching, Work};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -74,13 +74,20 @@ pub(crate) fn measure(
     let why = match settings.timing {
         None => here(),
         Some(Timing { effort, .. }) => {
+            let all = Relation::ALL.len();
+            let mut work = Work::new(
+                study_mesh.polygons.face_count(),
+                &settings.relations,
+                all,
+                &settings.backends,
+            );
             // To count the reads of a relation takes about as long as to build the structures.
             let relations = match settings.relations.len() {
-                0 => Relation::ALL.len(),
+                0 => all,
                 given => given,
             };
-            let faces = study_mesh.polygons.face_count();
-            let plan = launching.plan(effort, (1 + relations) * faces + MEMORY_AS_FACES)?;
+            work.faces = (1 + relations) * work.faces + MEMORY_AS_FACES;
+            let plan = launching.plan(effort, work)?;
             let meshes = Some(vec![study_mesh.report()]);
             plan.measure(meshes, &|done, what| bar.set(done, what), here)
         }

@@ -218,9 +218,9 @@ fn add_saved(
         launches: study.run.settings.launches,
         ..wanted.clone()
     };
-    if study.run.settings != wanted {
+    if let Some((option, saved, given)) = study.run.settings.difference(&wanted) {
         return Err(Failure::usage(format!(
-            "{} was made with other settings: name another folder, or use the same settings",
+            "{} was made with other settings ({option} was {saved}, and is {given} now): name another folder, or use the same settings",
             file.display()
         )));
     }
