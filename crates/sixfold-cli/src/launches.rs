@@ -18,7 +18,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use sixfold_results::numbers::counted;
+use sixfold_results::numbers::{approximate, counted};
 use sixfold_results::{Finding, MeshReport, Results};
 use sixfold_study::{Effort, LAUNCH_VARIABLE, pool_launches};
 
@@ -206,6 +206,9 @@ impl<'p> Launching<'p> {
         };
         let budget_s = budget.as_secs_f64();
         let [set_up_s, usual_s] = work.seconds();
+        if let Some(note) = too_short(budget_s, set_up_s) {
+            print_notice(&note);
+        }
         let fit = |each_s: f64| (budget_s / each_s) as u32;
         let Some(wanted) = wanted else {
             let (fewest, usual) = (FEWEST_BY_DEFAULT, fit(usual_s).min(MOST_BY_DEFAULT));
@@ -232,6 +235,18 @@ impl<'p> Launching<'p> {
             ))),
         }
     }
+}
+
+/// Says what a command needs on a mesh that takes `set_up_s` to read and build, if that is more than its budget.
+fn too_short(budget_s: f64, set_up_s: f64) -> Option<String> {
+    // Besides building, everything is run once.
+    let needed_s = 2.0 * set_up_s;
+    (needed_s > budget_s).then(|| {
+        format!(
+            "note: to build and run everything once takes about {} s, longer than the budget of {budget_s} s",
+            approximate(needed_s)
+        )
+    })
 }
 
 /// How a command, or a part of it, measures.
@@ -598,6 +613,21 @@ mod tests {
         assert_eq!([20.0, 24.0, 80.0].map(|s| by_default(s, large)), [1, 3, 5]);
         let rounds = Effort::Rounds(NonZeroU32::new(8).expect("above 0"));
         assert_eq!(count(None, rounds, STUDY).ok(), Some(1));
+    }
+
+    #[test]
+    fn a_command_says_what_it_needs_if_the_budget_is_too_short() {
+        let [set_up_s, _] = Work {
+            faces: 1_250_000,
+            ..STUDY
+        }
+        .seconds();
+        let note = too_short(5.0, set_up_s).expect("too short");
+        assert!(
+            note.contains("about 10 s, longer than the budget of 5 s"),
+            "{note}"
+        );
+        assert_eq!(too_short(20.0, set_up_s), None);
     }
 
     #[test]

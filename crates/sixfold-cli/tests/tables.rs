@@ -15,7 +15,7 @@ fn a_cube_is_shown_in_a_half_edge_mesh() {
         "8 vertices",
         "24 half-edges",
         "6 faces",
-        "twin*",
+        "twin†",
         "† not stored",
     ] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);

@@ -669,8 +669,10 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
             } else {
                 1.0
             };
-            row.ci_low_ns = row.median_ns.map(|ns| ns - half);
-            row.ci_high_ns = row.median_ns.map(|ns| ns + half);
+            // The times above are those of one visit.
+            let part = half / row.ns_per_element.expect("a time");
+            row.ci_low_ns = row.median_ns.map(|ns| (1.0 - part) * ns);
+            row.ci_high_ns = row.median_ns.map(|ns| (1.0 + part) * ns);
         }
         let page = ReportPage::new(&study.clone().into(), "sixfold study");
         let figure = figure_by_id(&page, "break-even");

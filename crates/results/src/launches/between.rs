@@ -63,7 +63,7 @@ pub struct StudyChange {
     error: MeanError,
     /// The logarithm of the largest factor that could be due to the machine.
     unsure: f64,
-    /// The variance from row to row of what is due to the machine.
+    /// The variance from row to row of what is due to the machine; infinite if it is not known.
     uneven: f64,
 }
 
@@ -107,23 +107,30 @@ pub fn study_changes(rows: &[LaunchPair<'_>], other_machine: bool) -> StudyChang
         false => None,
     };
     // A machine that became slower does not slow all rows down alike.
-    let uneven = common.filter(|_| !other_machine).map_or(0.0, |common| {
+    let uneven = |common: f64| {
         let apart = median(known().map(|change| (change.log - common).abs()).collect());
         let error = median(known().map(|change| change.error.squared).collect());
         let [apart, error] = [apart, error].map(Option::unwrap_or_default);
         ((NORMAL * apart).powi(2) - error).max(0.0)
-    });
+    };
+    let uneven = match common {
+        Some(_) if other_machine => 0.0,
+        // A change as large as this is more than the state of a machine: nothing is known of what it does to a row.
+        Some(common) if common.abs() > LASTING_SPEED.ln() => f64::INFINITY,
+        Some(common) => uneven(common),
+        None => f64::INFINITY,
+    };
     let changes = rows.iter().zip(&relative).map(|(row, relative)| {
         let [before, after] = [0, 1].map(|study| LogMean::new(row, study, None));
         let whole = Change::between(before?, after?, LASTING_IN_TIMES);
         let log = (row.ns[1] / row.ns[0]).ln();
         let half_width = student_at(0.975, whole.error.freedom) * whole.error.squared.sqrt();
-        let (log_of_change, error, unsure, uneven) = match (common, relative) {
+        let (log_of_change, error, unsure) = match (common, relative) {
             (Some(common), Some(relative)) => {
                 let unsure = UNEVEN * common.abs();
-                (relative.log - common, relative.error, unsure, uneven)
+                (relative.log - common, relative.error, unsure)
             }
-            _ => (whole.log, whole.error, LASTING_SPEED.ln(), f64::INFINITY),
+            _ => (whole.log, whole.error, LASTING_SPEED.ln()),
         };
         (half_width.is_finite() && log.is_finite()).then(|| StudyChange {
             interval: [log - half_width, log + half_width].map(f64::exp),

@@ -385,8 +385,8 @@ mod tests {
                 "pin",
             ),
             (
-                warnings(&good, &TIMER, &[&fine(), &wide], &[], None),
-                "1 of 2 intervals",
+                warnings(&good, &TIMER, &[&fine(), &wide, &wide], &[], None),
+                "2 of 3 intervals",
                 "--budget",
             ),
             (
@@ -400,6 +400,8 @@ mod tests {
                 "--operations",
             ),
         ];
+        let half = warnings(&good, &TIMER, &[&fine(), &wide], &[], None);
+        assert_eq!(half, [""; 0], "most intervals are narrow");
         for (messages, fault, remedy) in cases {
             let [message] = &messages[..] else {
                 panic!("{fault}: {messages:?}");
