@@ -187,6 +187,7 @@ measuring = Claims(
         refuses to compare two studies
         and one more
         exit code 1.
+        and the exit code is 1; with `--keep-going` it is 0
         exactly 20 rounds
         how far two surfaces
         1 edge with three or more faces: v0–v1 (line 7)

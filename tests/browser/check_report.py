@@ -227,15 +227,17 @@ def check_growth(figure, growth):
         for row in size["results"]:
             ns = row["median_ns"]  # lower bounds are not drawn
             if row["operation"] in operations and ns:
-                points[row["operation"], row["backend"], f"{size['faces']:,}"] = (size["faces"], ns)
+                sign = "~" if row["sampled"] else ""
+                points[row["operation"], row["backend"], f"{size['faces']:,}"] = (size["faces"], ns, sign)
     assert len(figure["marks"]) == len(points), figure["id"]
     here = []
     for mark in figure["marks"]:
         name, faces, found = re.match(r"(.+), ([\d,]+) faces: ([^,]+(?:,\d+[^,]*)?)", mark["title"]).groups()
         here.append(points[mark["panel"], name, faces])
-        assert found == duration(here[-1][1]), f"{mark['title']}: {here[-1][1]} ns in the data"
-    check_places(figure["marks"], [faces for faces, _ in here], figure["id"], "x")
-    check_places(figure["marks"], [ns for _, ns in here], figure["id"], "y")
+        _, ns, sign = here[-1]
+        assert found == sign + duration(ns), f"{mark['title']}: {ns} ns in the data"
+    check_places(figure["marks"], [faces for faces, *_ in here], figure["id"], "x")
+    check_places(figure["marks"], [ns for _, ns, _ in here], figure["id"], "y")
     for fit in growth["fits"]:
         if fit["all"]:
             assert f"{fit['backend']}: {fit['all']['exponent']:.2f}" in figure["text"], fit
