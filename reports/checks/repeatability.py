@@ -1,114 +1,90 @@
-"""The claims of reports/repeatability/README.md, from the printed output of the studies."""
-
-import re
+"""The claims of reports/repeatability/README.md, from what the repeated studies wrote."""
 
 from checks import data, figures
 from checks.claims import Claims
-from checks.data import RELATIONS
 
-OUTPUT = "reports/repeatability/output.md"
+ALL = "reports/repeatability/output.md"
 
 page = Claims(
     "reports/repeatability/README.md",
     definitions="""
-        with two cores of an AMD EPYC
-        differ by more than 10 %
+        with two hardware threads
     """,
 )
 
 
-def runs():
+def runs(path=ALL):
     """Returns the number of studies and the seconds of each."""
-    return data.quoted(OUTPUT, r"reports/repeatability (\d+) (\d+)")
+    return data.quoted(path, r"(\d+) studies of the built-in mesh, (\d+) s each")
 
 
-def leaders():
-    """Returns for each relation how often each backend is best or tied."""
-    rows = [line.strip("| ").split(" | ") for line in data.content(OUTPUT).splitlines() if re.search(r"(best|shared|tied) \d", line)]
-    led = lambda cell: {each.split()[0]: sum(map(int, re.findall(r"\d+", each))) for each in cell.split("; ")}
-    return {relation: led(cell) for relation, cell in rows}
-
-
-def triangles():
-    return data.quoted(OUTPUT, r"torus of ([\d,]+) triangles")[0]
-
-
-def require_same_leader():
-    always = [relation for relation, led in leaders().items() if max(led.values()) == int(runs()[0])]
-    data.require(always == list(RELATIONS.values()), f"one structure always leads only for {always}")
-
-
-def pairs():
-    """Returns the numbers of pairs, of those that are apart, and of those whose order is the same in 95 % of the studies."""
-    apart, every, steady = data.quoted(OUTPUT, r"In (\d+) of the (\d+) comparisons.* In (\d+) of these comparisons")
-    return every, apart, steady
-
-
-def variation(figure):
-    return data.quoted(OUTPUT, rf"\| {figure} \| ([\d.]+ %) \| ([\d.]+ %) \| ([\d.]+ %)")
-
-
-def within_study():
-    """Returns the typical and the largest difference between two times of one structure in one study."""
-    return data.quoted(OUTPUT, r"differ by ([\d.]+ %).* and by at most ([\d.]+ %)")
+def disturbed():
+    return data.quoted(ALL, r"In ([\d.]+ %) of the samples")[0]
 
 
 def coverage(kind):
-    """Returns the share of intervals that contain the median, and their number."""
-    return data.quoted(OUTPUT, rf"\| {kind} \| (\d+ %) \| (\d+) \|")
+    """Returns the share of intervals that contain the median of the other studies."""
+    return data.quoted(ALL, rf"\| {kind} \| ([\d.]+ %) \| [\d,]+ \|")[0]
 
 
-@page.says("A torus of {} triangles in random order was studied {} times, one study after the other, for {} s each")
+def winners():
+    """Returns the number of sole winners of a study, and how many of them are the usual ones."""
+    return data.quoted(ALL, r"sole winners, ([\d.]+) each. ([\d.]+ %) of them")
+
+
+def variation(kind):
+    return data.quoted(ALL, rf"\| {kind} \| ([\d.]+ %) \| [\d.]+ % \|")[0]
+
+
+def within_study():
+    return data.quoted(ALL, r"two times differ by ([\d.]+ %)")[0]
+
+
+def alarms(path=ALL):
+    """Returns the number of false alarms and of comparisons."""
+    return data.quoted(path, r"false alarm[^|]*\|[^|]*\| (\d+) of (\d+) \|")
+
+
+def found(path):
+    return data.quoted(path, r"longer is found \| ([\d.]+ %) \|")[0]
+
+
+@page.says("The built-in mesh was studied {} times, one study after the other, for {} s each")
 def studied():
-    return triangles(), *runs()
+    return runs()
 
 
-@page.says("For each of the {} relations, one structure is best or tied with the best in all {} studies.")
-def same_leader():
-    require_same_leader()
-    return figures.word(len(RELATIONS)), runs()[0]
+@page.says("In {} of the samples, the machine was more than 1.3 times slower than at best.")
+def busy():
+    return disturbed()
 
 
-@page.says(
-    "The times of every two structures were compared for each relation. In {} of {} comparisons, the medians over all "
-    "studies differ by more than 10 %. In {} of these, the same structure is faster in at least 95 % of the studies."
-)
-def compared():
-    every, apart, steady = pairs()
-    return apart, every, steady
+@page.says("Of the 95 % intervals of ratios, {} contain the median of the other studies; of those of times, {} do.")
+def covered():
+    return coverage("ratios"), coverage("times")
 
 
-@page.says("are {} results of backends that take more than 1.1 times the time of the best (median over all studies). In {} of "
-           "them, the study finds the backend slower.")
-def differences():
-    every, slower = data.quoted(OUTPUT, r"backends have (\d+) results.* In (\d+) of these results")
-    return every, slower
+@page.says("A study names a sole winner for {} of the 28 operations, and {} of these are the usual winner.")
+def named():
+    return winners()
 
 
 @page.says(
-    "A time varies by {} from study to study, and a ratio to the best backend by {} (the standard deviation divided by the "
-    "mean; median over all)."
+    "A time varies by {} from study to study, and a ratio by {} (standard deviation divided by the mean; median over all). The "
+    "two times of the structure that is measured twice in a study differ by {} (median)."
 )
 def varied():
-    return variation("time")[0], variation("ratio to the best")[0]
+    return variation("times"), variation("ratios"), within_study()
 
 
-@page.says("Two times of one structure in the same study differ by {} (median), and by at most {}.")
-def same_study():
-    return within_study()
+@page.says("In {} of {} comparisons of two of these studies, `compare --fail-if-slower` gives a false alarm.")
+def compared():
+    return alarms()
 
 
-@page.says(
-    "So {} of the {} intervals of times, and {} of the {} intervals of ratios, contain the median of all studies "
-    "(structures that scan are left out)."
-)
-def covered():
-    return *coverage("the time"), *coverage("the ratio to the best")
-
-
-@page.says("The additional variation has a standard deviation of {}, and the intervals of a study assume {}.")
-def drift():
-    return data.quoted(OUTPUT, r"standard deviation of ([\d.]+ %).* intervals assume ([\d.]+ %)")
+@page.says("Of times that were made 10 % longer, it finds {}.")
+def planted():
+    return found(ALL)
 
 
 TEXTS = [page]

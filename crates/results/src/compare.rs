@@ -6,7 +6,7 @@
 //! changes from study to study. A comparison of many times must not call one slower by chance: if the program did not
 //! change, all times of a comparison together do so with a probability of at most [`FALSE_ALARM`] (the same holds for
 //! faster). A time that was measured in one launch only cannot be compared, because nothing shows how much it varies
-//! from process to process; it is slower only if it is twice as long.
+//! from process to process; it is slower only if it is twice as long in three samples or more.
 
 mod matching;
 mod sentences;
@@ -405,10 +405,11 @@ fn verdict(
     divisor: f64,
 ) -> Verdict {
     let Some(change) = change else {
-        let ratio = row.ratio / divisor;
-        let interval = row.ci_low.zip(row.ci_high);
-        let [low, high] =
-            interval.map_or([ratio; 2], |(low, high)| [low, high].map(|e| e / divisor));
+        // One or two samples tell nothing.
+        let Some((low, high)) = row.ci_low.zip(row.ci_high) else {
+            return Verdict::CannotTell;
+        };
+        let [ratio, low, high] = [row.ratio, low, high].map(|end| end / divisor);
         return match () {
             () if ratio > CLEAR_DIFFERENCE.max(noise) && low > 1.0 => Verdict::Slower,
             () if ratio < CLEAR_DIFFERENCE.max(noise).recip() && high < 1.0 => Verdict::Faster,

@@ -14,8 +14,7 @@
 //!    if the samples are correlated.
 //! 2. **What no study sees.** A phase that is longer than the study shifts all samples of the
 //!    study. Only repeated studies show this variance (Kalibera and Jones 2013, Georges et al.
-//!    2007). [`UNSEEN_DRIFT`] is the standard deviation between studies, measured with the
-//!    `repeatability_report` example. [`UNSEEN_DRIFT`] gives the second half-width.
+//!    2007). [`UNSEEN_DRIFT`], the standard deviation between studies, gives the second half-width.
 //!
 //! With several launches, [`launches`](crate::launches) sees more than the samples of one process do.
 //!
@@ -39,7 +38,7 @@ pub(crate) const NORMAL: f64 = 1.959_964;
 ///
 /// Measured in ten studies of 45 s on a virtual machine: with a drift of 1 %, the intervals of
 /// times contained the median of all studies in 91 % of the cases, and the intervals of ratios in
-/// 92 %. The `repeatability_report` example estimates the drift of another machine.
+/// 92 %.
 pub const UNSEEN_DRIFT: f64 = 0.01;
 /// Samples farther from the median count as if they were at this distance. The unit is the standard
 /// deviation of a normal distribution with the same median deviation.
