@@ -7,13 +7,10 @@ fn main() {
     if let Some(commit) = git(&["describe", "--always", "--dirty", "--abbrev=12"]) {
         println!("cargo::rustc-env=STUDY_COMMIT={commit}");
     }
-    // Git writes this file when HEAD moves. The file does not exist outside a repository.
-    if let Some(log) = git(&[
-        "rev-parse",
-        "--path-format=absolute",
-        "--git-path",
-        "logs/HEAD",
-    ]) && Path::new(&log).exists()
+    // Git writes this file when HEAD moves. The file does not exist outside a repository. The path is relative to this
+    // package, so that two clones with one target folder do not take each other's commit.
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"])
+        && Path::new(&log).exists()
     {
         println!("cargo::rerun-if-changed={log}");
     }

@@ -38,7 +38,8 @@ pub const ALIKE: f64 = 1.5;
 /// The variance of a time from study to study that no study sees, divided by the variance from launch to launch. What
 /// slows the whole machine down changes no ratio.
 ///
-/// Chosen from the same studies, so that about 94 % of the intervals contain the median of the other studies.
+/// Chosen from the same studies, so that more than nine of ten intervals contain the median of the other studies. On
+/// a machine that is equally busy all the time, it is too much.
 pub const LASTING_IN_TIMES: f64 = 1.0 / 8.0;
 /// Maximum number of passes of the fit.
 const MAX_PASSES: usize = 100;

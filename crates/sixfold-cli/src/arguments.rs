@@ -94,9 +94,9 @@ not decided. Each lab of a report has launches of its own.
 
 Budget and rounds: With --budget, as many rounds are run as fit into the time. The structures that
 can win come first. What takes too long is sampled, run once after the rounds, estimated or left
-out, also if it is named; with --force, it is run. A budget below 6s has one launch. With --rounds,
-exactly this number of rounds of everything is run in each launch (one by default), without a time
-limit. Two machines then do the same work: whether a slow operation runs on a sample of the elements
+out, also if it is named; with --force, it is run. A budget below 6s has one launch (below 1.5s, if
+few operations are named). With --rounds, exactly this number of rounds of everything is run in each
+launch (one by default), without a time limit. Two machines then do the same work: whether a slow operation runs on a sample of the elements
 depends on the number of elements, not on measured times.
 
 Seed: The seed determines the random order of the runs, and which elements are in a sample.

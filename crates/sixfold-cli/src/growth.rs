@@ -12,7 +12,7 @@ use sixfold_study::{
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches::{self, Launching, Work};
+use crate::launches::{self, Launching, Work, chosen};
 use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::default_operations;
@@ -100,8 +100,7 @@ pub(crate) fn measure(
     let sum: usize = sizes.iter().sum();
     let work = Work::new(
         sum / sizes.len().max(1),
-        &settings.study.operations,
-        DEFAULT_OPERATIONS.len(),
+        chosen(&settings.study.operations, DEFAULT_OPERATIONS.len()),
         &settings.study.backends,
     );
     let plan = launching.plan(settings.study.effort, work.times(sizes.len()))?;

@@ -118,24 +118,29 @@ pub(crate) fn seed(seed: u64) -> u64 {
 pub(crate) struct Work {
     /// The number of faces of the meshes that are read, and built on all structures.
     pub(crate) faces: usize,
-    /// The number of operations that are timed in a round, each on each structure; `None` if they may take any time.
+    /// The number of times that are taken in a round; `None` if each may take any time.
     pub(crate) entries: Option<usize>,
+    /// The time in seconds of what is left out if the budget is short.
+    pub(crate) spare_s: f64,
+}
+
+/// Returns the length of a list of chosen names, of which an empty one stands for `all`.
+pub(crate) fn chosen<T>(list: &[T], all: usize) -> usize {
+    match list.len() {
+        0 => all,
+        given => given,
+    }
 }
 
 impl Work {
-    /// Returns the work on meshes with `faces` faces together, of `operations` on `backends`. An empty list stands for
-    /// all structures, and for `by_default` operations.
-    pub(crate) fn new<O>(
-        faces: usize,
-        operations: &[O],
-        by_default: usize,
-        backends: &[String],
-    ) -> Self {
-        let or_else = |given: usize, all| if given == 0 { all } else { given };
-        let operations = or_else(operations.len(), by_default);
+    /// Returns the work of so many `operations` on a mesh with `faces` faces, on `backends`: an empty list stands for all
+    /// structures.
+    pub(crate) fn new(faces: usize, operations: usize, backends: &[String]) -> Self {
+        let structures = sixfold::structure_infos().len();
         Self {
             faces,
-            entries: Some(operations * or_else(backends.len(), sixfold::structure_infos().len())),
+            entries: Some(operations * chosen(backends, structures)),
+            spare_s: 0.0,
         }
     }
 
@@ -144,17 +149,35 @@ impl Work {
         Self {
             faces: count * self.faces,
             entries: self.entries.map(|entries| count * entries),
+            ..self
         }
     }
 
-    /// Returns the approximate time to read and build the meshes, and the usual time of a launch.
-    fn seconds(self) -> [f64; 2] {
-        let set_up_s = SET_UP_S_PER_FACE * self.faces as f64;
+    /// Returns the approximate time to read and build the meshes.
+    fn set_up_s(self) -> f64 {
+        SET_UP_S_PER_FACE * self.faces as f64
+    }
+
+    /// Returns the usual time of a launch.
+    fn usual_s(self) -> f64 {
         let [least, most] = USUAL_S;
         let round_s = self
             .entries
             .map_or(most, |entries| ENTRY_S * entries as f64);
-        [set_up_s, round_s.clamp(least, most).max(4.0 * set_up_s)]
+        let before_s = self.set_up_s() + self.spare_s;
+        round_s.clamp(least, most).max(4.0 * before_s)
+    }
+
+    /// Says what is needed, if that is more than the budget.
+    fn too_short(self, budget_s: f64) -> Option<String> {
+        // Besides building, everything is run once.
+        let needed_s = 2.0 * self.set_up_s();
+        (needed_s > budget_s).then(|| {
+            format!(
+                "note: to build and run everything once takes about {} s, longer than the budget of {budget_s} s",
+                approximate(needed_s)
+            )
+        })
     }
 }
 
@@ -205,8 +228,10 @@ impl<'p> Launching<'p> {
             return Ok(wanted.unwrap_or(1));
         };
         let budget_s = budget.as_secs_f64();
-        let [set_up_s, usual_s] = work.seconds();
-        if let Some(note) = too_short(budget_s, set_up_s) {
+        let (set_up_s, usual_s) = (work.set_up_s() + work.spare_s, work.usual_s());
+        // The time of a lab is a part of that of the command.
+        let is_lab = matches!(self.part, Some(Part::Lab(_)));
+        if let Some(note) = work.too_short(budget_s).filter(|_| !is_lab) {
             print_notice(&note);
         }
         let fit = |each_s: f64| (budget_s / each_s) as u32;
@@ -235,18 +260,6 @@ impl<'p> Launching<'p> {
             ))),
         }
     }
-}
-
-/// Says what a command needs on a mesh that takes `set_up_s` to read and build, if that is more than its budget.
-fn too_short(budget_s: f64, set_up_s: f64) -> Option<String> {
-    // Besides building, everything is run once.
-    let needed_s = 2.0 * set_up_s;
-    (needed_s > budget_s).then(|| {
-        format!(
-            "note: to build and run everything once takes about {} s, longer than the budget of {budget_s} s",
-            approximate(needed_s)
-        )
-    })
 }
 
 /// How a command, or a part of it, measures.
@@ -570,6 +583,7 @@ mod tests {
     const STUDY: Work = Work {
         faces: 1000,
         entries: Some(28 * 6),
+        spare_s: 0.0,
     };
 
     fn count(wanted: Option<u32>, effort: Effort, work: Work) -> Result<u32, Failure> {
@@ -595,16 +609,21 @@ mod tests {
         let budgets = [20.0, 60.0, 3600.0];
         assert_eq!(budgets.map(|s| by_default(s, STUDY)), [5, 15, 60]);
         // Two operations need a launch of a second; what programs need is not known.
-        let named = Work::new(1000, &["build", "boundary"], 28, &[]);
+        let named = Work::new(1000, 2, &[]);
         assert_eq!(budgets.map(|s| by_default(s, named)), [20, 60, 60]);
         let program = Work {
             entries: None,
             ..STUDY
         };
         assert_eq!(budgets.map(|s| by_default(s, program)), [5, 15, 60]);
-        let one = Work::new(1000, &["build"], 28, &["half-edge".into()]);
-        assert_eq!((named.entries, one.entries), (Some(12), Some(1)));
-        assert_eq!(Work::new::<&str>(1000, &[], 28, &[]).entries, STUDY.entries);
+        let one = Work::new(1000, 2, &["half-edge".into()]);
+        assert_eq!((named.entries, one.entries), (Some(12), Some(2)));
+        assert_eq!([chosen(&["build"], 28), chosen::<&str>(&[], 28)], [1, 28]);
+        let explained = Work {
+            spare_s: 2.0,
+            ..named
+        };
+        assert_eq!(budgets.map(|s| by_default(s, explained)), [3, 7, 60]);
         // A million faces need 4 s to be read and built, and a launch should take four times that.
         let large = Work {
             faces: 1_000_000,
@@ -617,17 +636,21 @@ mod tests {
 
     #[test]
     fn a_command_says_what_it_needs_if_the_budget_is_too_short() {
-        let [set_up_s, _] = Work {
+        let work = Work {
             faces: 1_250_000,
             ..STUDY
-        }
-        .seconds();
-        let note = too_short(5.0, set_up_s).expect("too short");
+        };
+        let note = work.too_short(5.0).expect("too short");
         assert!(
             note.contains("about 10 s, longer than the budget of 5 s"),
             "{note}"
         );
-        assert_eq!(too_short(20.0, set_up_s), None);
+        assert_eq!(work.too_short(20.0), None);
+        let spare = Work {
+            spare_s: 100.0,
+            ..STUDY
+        };
+        assert_eq!(spare.too_short(1.0), None, "it is left out");
     }
 
     #[test]

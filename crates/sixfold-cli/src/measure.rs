@@ -194,11 +194,9 @@ pub(crate) fn exit_code(
         }
         false => "This is a fault in Sixfold: please report it",
     };
-    let end = match () {
-        () if interrupted || launches::has_ended_early() => INTERRUPTED,
-        // A dead launch is missing in the result.
-        () if launches::has_died() => MISMATCH,
-        () => 0,
+    let end = match interrupted || launches::has_ended_early() {
+        true => INTERRUPTED,
+        false => 0,
     };
     let code = code_of(written, results.mismatches(), cause, end)?;
     if interrupted {

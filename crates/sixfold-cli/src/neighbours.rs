@@ -39,8 +39,8 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
         part: None,
         stop: &session.stop,
     };
-    let tasks = &SpatialTask::ALL;
-    let work = Work::new(study_mesh.polygons.face_count(), tasks, tasks.len(), &[]);
+    let faces = study_mesh.polygons.face_count();
+    let work = Work::new(faces, SpatialTask::ALL.len(), &[]);
     let plan = launching.plan(settings.effort, work)?;
     let bar = Bar::new();
     let reports = Some(vec![study_mesh.report()]);

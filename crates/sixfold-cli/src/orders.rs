@@ -11,7 +11,7 @@ use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
-use crate::launches::{self, Launching, Work};
+use crate::launches::{self, Launching, Work, chosen};
 use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
@@ -62,8 +62,7 @@ pub(crate) fn measure(
     let faces = study_mesh.polygons.face_count();
     let work = Work::new(
         faces,
-        &settings.operations,
-        DEFAULT_OPERATIONS.len(),
+        chosen(&settings.operations, DEFAULT_OPERATIONS.len()),
         &settings.backends,
     );
     let plan = launching.plan(settings.effort, work.times(Order::ALL.len()))?;

@@ -56,12 +56,8 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let faces = study_meshes.iter().map(|mesh| mesh.polygons.face_count());
     // The operations of the mix are timed together and one by one, and building.
     let timed = settings.workload.mix.len() + 2;
-    let work = Work::new::<Part>(
-        faces.sum::<usize>() / study_meshes.len(),
-        &[],
-        timed,
-        &settings.backends,
-    );
+    let mean = faces.sum::<usize>() / study_meshes.len();
+    let work = Work::new(mean, timed, &settings.backends);
     let plan = launching.plan(settings.effort, work.times(study_meshes.len()))?;
     warn_of_debug_build();
     if Launch::current().is_none() {

@@ -196,6 +196,7 @@ impl Measurement<'_> {
         let work = Work {
             faces: programs.len() * faces.sum::<usize>(),
             entries: None,
+            spare_s: 0.0,
         };
         let plan = launching.plan(self.settings.effort, work)?;
         warn_of_debug_build();

@@ -9,7 +9,7 @@ use sixfold_study::{Operation, Progress, Settings, StudyError, StudyMesh};
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
-use crate::launches::{self, Launch, Launching, Part, Work};
+use crate::launches::{self, Launch, Launching, Part, Work, chosen};
 use crate::left_out::left_out_notes;
 use crate::listed_folder::ListedFolder;
 use crate::load;
@@ -123,8 +123,7 @@ pub(crate) fn measure(
 ) -> Result<Report, Failure> {
     let work = Work::new(
         study_mesh.polygons.face_count(),
-        &settings.operations,
-        Operation::ALL.len(),
+        chosen(&settings.operations, Operation::ALL.len()),
         &settings.backends,
     );
     let plan = launching.plan(settings.effort, work)?;

@@ -9,7 +9,7 @@ use sixfold_study::{Progress, Settings, StudyError, StudyMesh, Timing, WhySettin
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
-use crate::launches::{self, Launching, Work};
+use crate::launches::{self, Launching, Work, chosen};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -18,8 +18,8 @@ use crate::why_text::{legend, memory_text, rows_text};
 
 /// The seed of the random order of the measurements.
 const SEED: u64 = 1;
-/// Number of faces of which the structures are built in about the time in which a launch measures the speed of memory.
-const MEMORY_AS_FACES: usize = 400_000;
+/// The approximate time in seconds in which a launch measures the speed of memory.
+const MEMORY_S: f64 = 1.6;
 
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
@@ -74,19 +74,14 @@ pub(crate) fn measure(
     let why = match settings.timing {
         None => here(),
         Some(Timing { effort, .. }) => {
-            let all = Relation::ALL.len();
-            let mut work = Work::new(
-                study_mesh.polygons.face_count(),
-                &settings.relations,
-                all,
-                &settings.backends,
-            );
-            // To count the reads of a relation takes about as long as to build the structures.
-            let relations = match settings.relations.len() {
-                0 => all,
-                given => given,
+            let relations = chosen(&settings.relations, Relation::ALL.len());
+            let faces = study_mesh.polygons.face_count();
+            let work = Work {
+                // To count the reads of a relation takes about as long as to build the structures.
+                faces: (1 + relations) * faces,
+                spare_s: MEMORY_S,
+                ..Work::new(faces, relations, &settings.backends)
             };
-            work.faces = (1 + relations) * work.faces + MEMORY_AS_FACES;
             let plan = launching.plan(effort, work)?;
             let meshes = Some(vec![study_mesh.report()]);
             plan.measure(meshes, &|done, what| bar.set(done, what), here)

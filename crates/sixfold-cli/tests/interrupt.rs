@@ -33,7 +33,9 @@ fn an_interrupted_report_has_the_finished_results() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 20);
     let arguments = ["study", "grid.obj", "--rounds", "1000000", "--report", "R"];
-    sixfold.run_interrupted(&arguments, "INT", "measuring ");
+    let run = sixfold.run_interrupted(&arguments, "INT", "measuring ");
+    let rest = "to measure the rest, run the same command with --resume: R has what is finished";
+    assert!(run.stderr.contains(rest), "{run:?}");
     let document = text(&sixfold, "R/results.json");
     let study: Value = crate::json_csv::finding(&document);
     assert_eq!(study["interrupted"], true);

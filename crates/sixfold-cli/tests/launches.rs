@@ -385,15 +385,9 @@ fn a_mesh_that_can_be_read_once_is_measured_in_one_launch() {
 /// Starts a study of three launches, and calls `at_second` with the process when the second one has begun. Returns
 /// its end.
 #[cfg(target_os = "linux")]
-fn disturbed(sixfold: &Sixfold, at_second: impl FnOnce(&Child)) -> Run {
-    let mut child = sixfold.start(&study(&[
-        "--rounds",
-        "400",
-        "--launches",
-        "3",
-        "--json",
-        "all.json",
-    ]));
+fn disturbed(sixfold: &Sixfold, options: &[&str], at_second: impl FnOnce(&Child)) -> Run {
+    let three = ["--rounds", "400", "--launches", "3", "--json", "all.json"];
+    let mut child = sixfold.start(&study(&[&three[..], options].concat()));
     let mut errors = BufReader::new(child.stderr.take().expect("piped"));
     let mut line = String::new();
     while !line.contains("launch 2 of 3: measuring") {
@@ -418,32 +412,32 @@ fn disturbed(sixfold: &Sixfold, at_second: impl FnOnce(&Child)) -> Run {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_launch_that_is_killed_is_named_and_left_out() {
-    let sixfold = with_grid();
-    let run = disturbed(&sixfold, |child| {
-        let id = child.id();
-        let launches =
-            fs::read_to_string(format!("/proc/{id}/task/{id}/children")).expect("its launch");
-        let killed = std::process::Command::new("kill")
-            .arg("-9")
-            .args(launches.split_whitespace())
-            .status();
-        assert!(killed.expect("kill runs").success());
-    });
-    assert_eq!(run.code, Some(1), "{run:?}");
-    assert!(
-        run.stderr
-            .contains("launch 2 of 3 is left out: it ended with signal: 9"),
-        "{run:?}"
-    );
-    let missing = "error: a launch is missing, for the reason in the note above: measure again.";
-    assert!(run.stderr.contains(missing), "{run:?}");
-    let all = document(&sixfold, "all.json");
-    assert_eq!(launches_of_rows(&all), [2; 4]);
-    assert!(
-        all["notices"]
-            .to_string()
-            .contains("launch 2 of 3 is left out")
-    );
+    let missing = "a launch is missing, for the reason in the note above";
+    let ends = [
+        (&[][..], 1, format!("error: {missing}: measure again.")),
+        (&["--keep-going"], 0, format!("note: {missing}")),
+    ];
+    for (options, code, last) in ends {
+        let sixfold = with_grid();
+        let run = disturbed(&sixfold, options, |child| {
+            let id = child.id();
+            let launches =
+                fs::read_to_string(format!("/proc/{id}/task/{id}/children")).expect("its launch");
+            let killed = std::process::Command::new("kill")
+                .arg("-9")
+                .args(launches.split_whitespace())
+                .status();
+            assert!(killed.expect("kill runs").success());
+        });
+        assert_eq!(run.code, Some(code), "{run:?}");
+        let left_out = "launch 2 of 3 is left out";
+        let why = format!("{left_out}: it ended with signal: 9");
+        assert!(run.stderr.contains(&why), "{run:?}");
+        assert!(run.stderr.contains(&last), "{run:?}");
+        let all = document(&sixfold, "all.json");
+        assert_eq!(launches_of_rows(&all), [2; 4]);
+        assert!(all["notices"].to_string().contains(left_out));
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -451,7 +445,7 @@ fn a_launch_that_is_killed_is_named_and_left_out() {
 fn an_interruption_keeps_what_the_launches_have_measured() {
     let sixfold = with_grid();
     // Only the first process gets the signal; it tells the launch.
-    let run = disturbed(&sixfold, |child| crate::run::send("INT", child));
+    let run = disturbed(&sixfold, &[], |child| crate::run::send("INT", child));
     assert_eq!(run.code, Some(4), "{run:?}");
     let all = document(&sixfold, "all.json");
     assert_eq!(all["findings"][0]["interrupted"], true);
@@ -469,7 +463,7 @@ fn an_interruption_keeps_what_the_launches_have_measured() {
 fn a_launch_ends_with_its_command() {
     let sixfold = with_grid();
     let mut launches = String::new();
-    disturbed(&sixfold, |child| {
+    disturbed(&sixfold, &[], |child| {
         let id = child.id();
         launches =
             fs::read_to_string(format!("/proc/{id}/task/{id}/children")).expect("its launch");
@@ -655,18 +649,26 @@ fn times_of_queries_are_measured_in_launches_and_explained_anew() {
     assert!(run.stderr.contains("--launches"), "{run:?}");
 }
 
-#[test]
-fn each_lab_of_a_report_has_its_launches() {
-    let sixfold = with_grid();
-    let options = [
+/// The arguments of a report on few operations, with `options`.
+fn report_on_few<'a>(options: &[&'a str]) -> Vec<&'a str> {
+    let few = [
+        "study",
+        "grid.obj",
         "--operations",
         "vertex_faces",
         "--backends",
         "face-vertex,half-edge",
+        "--report",
+        "out",
     ];
-    let effort = ["--rounds", "1", "--launches", "2", "--report", "out"];
-    let labs = ["--labs", "orders,why"];
-    let arguments = [&["study", "grid.obj"], &options[..], &effort, &labs].concat();
+    [&few[..], options].concat()
+}
+
+#[test]
+fn each_lab_of_a_report_has_its_launches() {
+    let sixfold = with_grid();
+    let labs = ["--rounds", "1", "--launches", "2", "--labs", "orders,why"];
+    let arguments = report_on_few(&labs);
     run_ok(&sixfold, &arguments);
     let all = document(&sixfold, "out/results.json");
     let [study, orders, why] = &all["findings"].as_array().expect("findings")[..] else {
@@ -705,18 +707,8 @@ fn each_lab_of_a_report_has_its_launches() {
 #[test]
 fn a_lab_has_as_many_launches_as_its_budget_holds() {
     let sixfold = with_grid();
-    let options = [
-        "--operations",
-        "vertex_faces",
-        "--backends",
-        "face-vertex,half-edge",
-    ];
-    let effort = ["--budget", "2s", "--launches", "2", "--report", "out"];
-    let labs = ["--labs", "growth"];
-    let run = run_ok(
-        &sixfold,
-        &[&["study", "grid.obj"], &options[..], &effort, &labs].concat(),
-    );
+    let labs = ["--budget", "2s", "--launches", "2", "--labs", "growth"];
+    let run = run_ok(&sixfold, &report_on_few(&labs));
     let note = "note: growth does not have 2 launches: a budget of 1 s holds at most 1 launch";
     assert!(run.stderr.contains(note), "{run:?}");
     let all = document(&sixfold, "out/results.json");

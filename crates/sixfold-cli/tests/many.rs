@@ -206,7 +206,12 @@ fn finished_studies_are_not_repeated() {
     let other = [
         "study", "scans", "--report", "out", "--resume", "--seed", "7",
     ];
-    assert_refused(&sixfold, &other, 2, "other settings");
+    assert_refused(
+        &sixfold,
+        &other,
+        2,
+        "other settings (--operations was boundary,edge_length, and is the default now)",
+    );
 }
 
 #[test]

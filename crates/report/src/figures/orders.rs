@@ -2,7 +2,6 @@
 //! structure.
 
 use sixfold_results::numbers::{duration, figure as shown, shown_ratio, times};
-use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
@@ -37,7 +36,8 @@ struct Point {
     ratio: f64,
     /// Time per element.
     ns: f64,
-    samples: usize,
+    /// Whether the time is from too few launches or samples to be ranked.
+    is_unsure: bool,
 }
 
 /// Draws a panel for each operation. All panels have one scale.
@@ -81,12 +81,9 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
             "A point is the time of a structure in one order of the elements, divided by that of the best order of this structure, \
              on a logarithmic scale that is the same in all panels: on the right is slower. The text names the slowest order, and \
              gives the time of the best order.{} The table has all times per element.",
-            match points
-                .iter()
-                .any(|point| point.samples < FEWEST_OF_A_WINNER)
-            {
-                true => format!(" Rings are times from fewer than {FEWEST_OF_A_WINNER} samples."),
-                false => String::new(),
+            match points.iter().any(|point| point.is_unsure) {
+                true => " Rings are times from too few launches or samples to be ranked.",
+                false => "",
             }
         ),
         table,
@@ -108,7 +105,7 @@ fn lines<'r>(report: &'r OrdersReport, comparison: &Comparison) -> Vec<Line<'r>>
             Some(Point {
                 ratio: shown_ratio(ns, best),
                 ns,
-                samples: row.samples,
+                is_unsure: !row.has_enough_samples(),
             })
         });
         Line {
@@ -183,8 +180,14 @@ fn panel(
         let mut best = f64::INFINITY;
         let middle = (line.points.len() as f64 - 1.0) / 2.0;
         let points = line.points.iter().enumerate();
-        for (place, &Point { ratio, ns, samples }) in
-            points.filter_map(|(i, p)| Some((i, p.as_ref()?)))
+        for (
+            place,
+            &Point {
+                ratio,
+                ns,
+                is_unsure,
+            },
+        ) in points.filter_map(|(i, p)| Some((i, p.as_ref()?)))
         {
             if ratio > worst.1 {
                 worst = (place, ratio);
@@ -198,7 +201,7 @@ fn panel(
                 duration(ns)
             );
             let at = [scale.place(ratio), y + APART * (place as f64 - middle)];
-            canvas.mark(title, |canvas| match samples < FEWEST_OF_A_WINNER {
+            canvas.mark(title, |canvas| match is_unsure {
                 true => canvas.ring(at, 3.5, table_colour(place)),
                 false => canvas.circle(at, 4.0, table_colour(place)),
             });

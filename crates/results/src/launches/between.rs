@@ -13,7 +13,7 @@
 use std::array::from_fn;
 
 use super::{LASTING_IN_TIMES, MeanError, trimmed, trimmed_mean, variance};
-use crate::statistics::{median, student_at};
+use crate::statistics::{median, median_and_deviation, student_at};
 
 /// Minimum number of rows from which the common speed of a launch is estimated.
 const FEWEST_ROWS: usize = 6;
@@ -38,9 +38,6 @@ const UNEVEN: f64 = 0.5;
 /// The degrees of freedom that the variance of a typical row has in that of each row. With more, rows that vary more
 /// than others are found too often.
 const TYPICAL_FREEDOM: f64 = 3.0;
-
-/// The median of the absolute values of a normal distribution times this is its standard deviation.
-const NORMAL: f64 = 1.4826;
 
 /// The changes of all rows between two studies.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,24 +98,20 @@ pub fn study_changes(rows: &[LaunchPair<'_>], other_machine: bool) -> StudyChang
     let pairs = means[0].iter().zip(&means[1]);
     let relative = pairs.map(|(before, after)| Some(Change::between((*before)?, (*after)?, 0.0)));
     let relative: Vec<Option<Change>> = relative.collect();
-    let known = || relative.iter().flatten();
-    let common = match known().count() >= FEWEST_ROWS {
-        true => median(known().map(|change| change.log).collect()),
-        false => None,
-    };
+    let known: Vec<Change> = relative.iter().copied().flatten().collect();
+    let logs: Vec<f64> = known.iter().map(|change| change.log).collect();
+    let spread = median_and_deviation(&logs).filter(|_| known.len() >= FEWEST_ROWS);
+    let common = spread.map(|(common, _)| common);
     // A machine that became slower does not slow all rows down alike.
-    let uneven = |common: f64| {
-        let apart = median(known().map(|change| (change.log - common).abs()).collect());
-        let error = median(known().map(|change| change.error.squared).collect());
-        let [apart, error] = [apart, error].map(Option::unwrap_or_default);
-        ((NORMAL * apart).powi(2) - error).max(0.0)
-    };
-    let uneven = match common {
+    let uneven = match spread {
         Some(_) if other_machine => 0.0,
+        Some((common, deviation)) if common.abs() <= LASTING_SPEED.ln() => {
+            let errors = known.iter().map(|change| change.error.squared);
+            let error = median(errors.collect()).unwrap_or_default();
+            (deviation.powi(2) - error).max(0.0)
+        }
         // A change as large as this is more than the state of a machine: nothing is known of what it does to a row.
-        Some(common) if common.abs() > LASTING_SPEED.ln() => f64::INFINITY,
-        Some(common) => uneven(common),
-        None => f64::INFINITY,
+        _ => f64::INFINITY,
     };
     let changes = rows.iter().zip(&relative).map(|(row, relative)| {
         let [before, after] = [0, 1].map(|study| LogMean::new(row, study, None));

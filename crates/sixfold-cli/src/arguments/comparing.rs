@@ -75,8 +75,8 @@ one backend, by the same command, on the same mesh and in the same case (order, 
 The ratio of a measurement is the time in the second file, divided by the time in the first file.
 
 A measurement counts as slower if chance does not explain it: if the program did not change, at most
-one of 200 comparisons finds a change. The times of the launches show what chance does: files with
-one launch cannot be compared, unless a time doubled. The machine may be slower as a whole in one of
+one of 200 comparisons finds anything slower. The times of the launches show what chance does: files with
+one launch cannot be compared, unless a time doubled in three samples or more. The machine may be slower as a whole in one of
 the files, so a measurement is compared with the others: it is slower if it changed by more than
 they did. With fewer than six, only a change by more than 1.3 can be told from the machine. If all
 together take 1.3 times as long, the whole program is slower. Ratios up to --noise count as equal.
@@ -170,8 +170,8 @@ files in it are named and left out. The results are shown in the order in which 
 because they name their commits, but not the times of these commits: measure older commits first.
 
 Each document is compared with the first one, as `compare` does: a measurement counts as slower if
-chance does not explain it. All comparisons together find a change with a probability of at most one
-in 200 if the program did not change. Results of one launch cannot be compared. A document of other
+chance does not explain it. All comparisons together find anything slower with a probability of at
+most one in 200 if the program did not change. Results of one launch cannot be compared. A document of other
 meshes, or with other --heap or --caches, is compared with documents of its kind; differences of
 machine, program and settings are shown.
 
