@@ -162,9 +162,11 @@ measuring = Claims(
         the two times of one structure
         median polish (Tukey 1977)
         the ratio of two structures is the quotient of their times
-        fewer than four samples
+        from only one of several launches
+        fewer than four samples of a single launch
         a budget
-        below 6 s has one
+        a second, that of a whole study takes 4 s
+        below 6 s has a single one
         its 95 % interval
         Jones 2013, 2020
         within 5 % of 1
