@@ -129,13 +129,13 @@ def compared(sixfold, before, after, folder):
 
 
 def alarms(sixfold, documents):
-    """Compares every two documents. Returns the number of comparisons and of those with each exit code, the number of single
-    times and of those called slower or not decided, and the number of planted slowdowns that were found."""
+    """Compares every two documents. Returns the exit codes, the number of single times and of those called slower or not
+    decided, and for each comparison the distance of the two studies and whether the planted slowdown was found."""
     chosen = random.Random(1)
-    codes, times, slower, open_times, found = [], 0, 0, 0, 0
+    codes, times, slower, open_times, found = [], 0, 0, 0, []
     with tempfile.TemporaryDirectory() as scratch:
         scratch = pathlib.Path(scratch)
-        for before, after in itertools.combinations(documents, 2):
+        for (first, before), (second, after) in itertools.combinations(enumerate(documents), 2):
             code, verdicts = compared(sixfold, before, after, scratch)
             codes.append(code)
             times += len(verdicts)
@@ -143,7 +143,7 @@ def alarms(sixfold, documents):
             open_times += sum(verdict == "cannot_tell" for verdict in verdicts.values())
             key = chosen.choice(sorted(verdicts))
             _, verdicts = compared(sixfold, before, slowed(after, key), scratch)
-            found += verdicts[key] == "slower"
+            found.append((second - first, verdicts[key] == "slower"))
     return codes, times, slower, open_times, found
 
 
@@ -179,7 +179,9 @@ def report(sixfold, output, options, documents):
         lines.append(f"| {name} | {100 * typical:.1f} % | {100 * worst:.1f} % |")
     lines += ["", f"In each study, one structure is measured twice. The two times differ by {100 * (statistics.median(noises) - 1):.1f} % (median over "
               f"the operations, then over the studies; at most {100 * (max(noises) - 1):.1f} %).", ""]
-    codes, times, slower, open_times, found = alarms(sixfold, documents)
+    codes, times, slower, open_times, planted = alarms(sixfold, documents)
+    near = [is_found for distance, is_found in planted if distance == 1]
+    found = sum(is_found for _, is_found in planted)
     lines += [
         "## Comparisons of two studies", "",
         f"`sixfold compare --fail-if-slower` compared every two studies of the same program, {len(codes)} comparisons of {times // len(codes)} times.", "",
@@ -187,7 +189,8 @@ def report(sixfold, output, options, documents):
         f"| false alarm: the second study is slower | {percent(codes.count(SLOWER), len(codes))} | {codes.count(SLOWER)} of {len(codes)} |",
         f"| single times called slower | {percent(slower, times)} | {slower:,} of {times:,} |",
         f"| single times that cannot be told | {percent(open_times, times)} | {open_times:,} of {times:,} |",
-        f"| a time that was made {100 * (SLOWDOWN - 1):.0f} % longer is found | {percent(found, len(codes))} | {found} of {len(codes)} |", "",
+        f"| a time that was made {100 * (SLOWDOWN - 1):.0f} % longer is found | {percent(found, len(codes))} | {found} of {len(codes)} |",
+        f"| the same, in studies that follow each other | {percent(sum(near), len(near))} | {sum(near)} of {len(near)} |", "",
     ]
     return "\n".join(lines)
 

@@ -6,7 +6,7 @@ from typing import Callable
 
 HOLE = "{}"
 # The contents of a hole do not reach into the next cell of a table.
-FILLING = r"((?:(?! \| ).){1,120}?)"
+FILLING = r"((?:(?! \| ).){1,200}?)"
 
 
 @dataclass

@@ -18,7 +18,8 @@ RELATIONS = {
 }
 # The fewest samples from which a winner is named.
 ENOUGH = 4
-BUILT_IN, SHUFFLED = "built-in mesh", "shuffled.obj"
+# The meshes of the workloads. Each differs from the first in one thing: the order, the size, or the faces.
+BUILT_IN, SHUFFLED, LARGE, QUADS = "built-in.obj", "shuffled.obj", "large.obj", "quads.obj"
 
 
 class Missing(Exception):

@@ -6,7 +6,7 @@ most", are rounded outwards. So a range contains each of its values, also as a t
 
 import math
 
-WORDS = "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen".split()
+WORDS = "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen".split()
 
 
 def rounded(value, digits, to=round):

@@ -4,7 +4,7 @@ import argparse
 import pathlib
 import unittest
 
-from checks import claims, commits, data, text
+from checks import advice, claims, commits, data, text
 from checks import chapters, conclusions, edits, front_page, guide, repeatability, shorter, subdivision, validity
 
 TEXTS = [*conclusions.TEXTS, *edits.TEXTS, *subdivision.TEXTS, *repeatability.TEXTS, *validity.TEXTS, *guide.TEXTS]
@@ -91,6 +91,18 @@ def write(result):
     (data.ROOT / page.path).write_text(content, encoding="utf-8")
 
 
+def check_picture(write_it):
+    """Returns a problem if the picture of README.md is not that of the data."""
+    try:
+        drawn = advice.picture()
+        if write_it:
+            (data.ROOT / advice.PICTURE).write_text(drawn, encoding="utf-8")
+        is_drawn = data.content(advice.PICTURE) == drawn
+    except data.Missing as error:
+        return [f"{advice.PICTURE}: {error}"]
+    return [] if is_drawn else [f"{advice.PICTURE}: not the picture of the data; --write draws it"]
+
+
 def main(usage):
     as_written = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(description=usage, formatter_class=as_written, usage="reports/check")
@@ -106,7 +118,9 @@ def main(usage):
         print("".join(f"{line}\n" for line in (result.shown if chosen.show else []) + result.problems), end="")
         if chosen.write:
             write(result)
-    problems = sum(len(result.problems) for result in results)
+    drawing = check_picture(chosen.write)
+    print("".join(f"{line}\n" for line in drawing), end="")
+    problems = sum(len(result.problems) for result in results) + len(drawing)
     print(f"{len(TEXTS)} texts, {sum(len(said.all) for said in TEXTS)} claims, {problems} contradictions")
     if obstacle:
         print(f"The commits were not checked: {obstacle}.")

@@ -4,11 +4,14 @@ from checks import data, figures
 from checks.claims import Claims
 
 ALL = "reports/repeatability/output.md"
+NAMED = "reports/repeatability/named.md"
 
 page = Claims(
     "reports/repeatability/README.md",
     definitions="""
         with two hardware threads
+        Two named operations
+        To find 10 % in a minute
     """,
 )
 
@@ -22,18 +25,18 @@ def disturbed():
     return data.quoted(ALL, r"In ([\d.]+ %) of the samples")[0]
 
 
-def coverage(kind):
+def coverage(kind, path=ALL):
     """Returns the share of intervals that contain the median of the other studies."""
-    return data.quoted(ALL, rf"\| {kind} \| ([\d.]+ %) \| [\d,]+ \|")[0]
+    return data.quoted(path, rf"\| {kind} \| ([\d.]+ %) \| [\d,]+ \|")[0]
 
 
-def winners():
+def winners(path=ALL):
     """Returns the number of sole winners of a study, and how many of them are the usual ones."""
-    return data.quoted(ALL, r"sole winners, ([\d.]+) each. ([\d.]+ %) of them")
+    return data.quoted(path, r"sole winners, ([\d.]+) each. ([\d.]+ %) of them")
 
 
-def variation(kind):
-    return data.quoted(ALL, rf"\| {kind} \| ([\d.]+ %) \| [\d.]+ % \|")[0]
+def variation(kind, path=ALL):
+    return data.quoted(path, rf"\| {kind} \| ([\d.]+ %) \| [\d.]+ % \|")[0]
 
 
 def within_study():
@@ -85,6 +88,35 @@ def compared():
 @page.says("Of times that were made 10 % longer, it finds {}.")
 def planted():
     return found(ALL)
+
+
+@page.says("Two named operations were studied {} times in the same way, in {} launches each.")
+def studied_named():
+    return runs(NAMED)[0], data.quoted(NAMED, r"A study has (\d+) launches")[0]
+
+
+@page.says("The machine became faster in the meantime: a time varies by {} from study to study.")
+def varied_named():
+    return variation("times", NAMED)
+
+
+@page.says(
+    "So the studies tell less about each other: {} of the intervals of ratios contain the median of the other studies, and {} of "
+    "those of times."
+)
+def covered_named():
+    return coverage("ratios", NAMED), coverage("times", NAMED)
+
+
+@page.says("The sole winners are the usual ones in {} of the rows.")
+def won_named():
+    return winners(NAMED)[1]
+
+
+@page.says("In {} of {} comparisons, `compare --fail-if-slower` gives a false alarm. Of times that were made 10 % longer, it finds {}; in "
+           "studies that follow each other, {}.")
+def compared_named():
+    return *alarms(NAMED), found(NAMED), data.quoted(NAMED, r"follow each other \| ([\d.]+ %) \|")[0]
 
 
 TEXTS = [page]

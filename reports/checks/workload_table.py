@@ -1,25 +1,29 @@
-"""The table of workloads in reports/README.md."""
+"""The tables of workloads in reports/README.md."""
 
 from checks import data
-from checks.data import BUILT_IN, SHUFFLED
+from checks.advice import MESHES, plain
 
 # In the order of `sixfold workloads`.
 NAMES = (
-    "rendering-upload", "vertex-normals", "ray-casting-setup", "smoothing", "remeshing", "decimation", "subdivision",
-    "region-growing", "geodesic-dijkstra", "parameterisation", "sculpting-brush", "feature-detection", "boundary-repair",
+    "rendering-upload", "vertex-normals", "ray-casting-setup", "smoothing", "remeshing", "decimation", "modelling",
+    "subdivision", "region-growing", "geodesic-dijkstra", "parameterisation", "sculpting-brush", "feature-detection", "boundary-repair",
     "one-shot-conversion",
 )
-SHOWN = 4
+SHOWN = 3
 
 
-def cells(name):
-    """Returns the four cells of a workload: the fastest backends and the cheapest for one use, on each mesh."""
-    rows = [data.workload(name, mesh) for mesh in (BUILT_IN, SHUFFLED)]
-    return tuple(cell for workload in rows for cell in (fastest(workload), cheapest(workload)))
+def on_each(name, cell):
+    """Returns a cell of each mesh for a workload. A mesh on which it cannot run has none."""
+    known = data.workloads()
+    return tuple(cell(known[name, mesh]) if (name, mesh) in known else "–" for mesh in MESHES)
 
 
-def row(name):
-    return f"| {name} | {' | '.join(cells(name))} |"
+def fastest_row(name):
+    return on_each(name, fastest)
+
+
+def cheapest_row(name):
+    return on_each(name, cheapest)
 
 
 def fastest(workload):
@@ -39,11 +43,6 @@ def cheapest(workload):
 def with_ratio(workload, backend):
     ratio = "" if backend == workload.fastest else f" {workload.ratio(backend):#.3g}"
     return plain(backend) + ratio
-
-
-def plain(backend):
-    """Returns the name of a backend in a sentence."""
-    return backend if backend.endswith(("-edge", "-vertex")) else backend.replace("-", " ")
 
 
 def meshes():
