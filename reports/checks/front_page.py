@@ -189,6 +189,8 @@ measuring = Claims(
         exit code 1.
         and the exit code is 1; with `--keep-going` it is 0
         exactly 20 rounds
+        `--confidence 99%`
+        by default 95%
         how far two surfaces
         1 edge with three or more faces: v0–v1 (line 7)
     """,

@@ -1,7 +1,7 @@
 //! Tests with mixers of known costs, on a simulated machine whose speed drifts.
 
 use sixfold::{PolygonMesh, QueryCost, shapes};
-use sixfold_results::{Policy, Ranked, Results, Status};
+use sixfold_results::{Confidence, Policy, Ranked, Results, Status};
 use sixfold_workload::{
     Job, MixBackend, Operation, Outcome, Series, Task, TimedBackend, TimedRun, built_in,
 };
@@ -75,6 +75,7 @@ fn settings(effort: Effort) -> PickSettings {
         needs: Vec::new(),
         max_memory: None,
         effort,
+        confidence: Confidence::default(),
         seed: 7,
         heap: Policy::Kept,
     }
@@ -565,12 +566,14 @@ fn the_figures_of_a_pick_are_its_times() {
 fn a_run_has_the_settings_of_its_pick() {
     let settings = PickSettings {
         backends: vec!["half-edge".into()],
+        confidence: "99%".parse().expect("allowed"),
         seed: 9,
         heap: Policy::System,
         ..settings(Effort::of_rounds(3))
     };
     let expected = RunSettings {
         backends: vec!["half-edge".into()],
+        confidence: "99%".parse().expect("allowed"),
         seed: 9,
         heap: Policy::System,
         ..Effort::of_rounds(3).run_settings()
