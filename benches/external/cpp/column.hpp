@@ -29,6 +29,9 @@
 #include <utility>
 #include <vector>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <nlohmann/json.hpp>
 
 namespace column {
@@ -88,13 +91,25 @@ inline uint64_t nanoseconds(clockid_t clock) {
     return uint64_t(now.tv_sec) * 1000000000 + uint64_t(now.tv_nsec);
 }
 
+// Returns the bytes that the program has allocated; 0 if the allocator does not say it.
+inline size_t allocated() {
+#ifdef __GLIBC__
+    const struct mallinfo2 now = mallinfo2();
+    return now.uordblks + now.hblkhd;
+#else
+    return 0;
+#endif
+}
+
 template <class Adapter>
 class Runner {
   public:
-    Runner(const Input& input)
-        : input(input), adapter(std::make_unique<Adapter>(input)), face_values(input.faces()), vertex_values(input.positions) {
+    Runner(const Input& input) : input(input), adapter(built(input, bytes)), face_values(input.faces()), vertex_values(input.positions) {
         check();
     }
+
+    // Returns the bytes that the library allocated for the mesh.
+    size_t size() const { return bytes; }
 
     // Returns the time of `times` runs and the result of one, or a refusal if the operation is unknown.
     nlohmann::json run(const std::string& name, uint64_t times) {
@@ -124,8 +139,16 @@ class Runner {
     using Face = typename Adapter::Face;
 
     const Input& input;
+    size_t bytes = 0;
     std::unique_ptr<Adapter> adapter;
     std::vector<Vector> face_values, vertex_values;
+
+    static std::unique_ptr<Adapter> built(const Input& input, size_t& bytes) {
+        const size_t before = allocated();
+        auto adapter = std::make_unique<Adapter>(input);
+        bytes = allocated() - before;
+        return adapter;
+    }
 
     // Refuses a mesh that the structure accepted but does not represent correctly.
     void check() {
@@ -332,7 +355,7 @@ int serve(int argc, char** argv) {
         }
         // The allocator of the GNU C library: Sixfold can make it keep pages by an environment variable.
 #ifdef __GLIBC__
-        write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"heap", "glibc"}});
+        write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"bytes", runner->size()}, {"heap", "glibc"}});
 #else
         write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}});
 #endif

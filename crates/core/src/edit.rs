@@ -1,6 +1,6 @@
 //! Edits in place, their reports, and data that follows them.
 
-pub(crate) mod edit_at_triangle;
+pub(crate) mod edit_at_face;
 pub(crate) mod edit_call;
 pub(crate) mod edit_check;
 pub(crate) mod edit_error;

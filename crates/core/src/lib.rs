@@ -156,7 +156,7 @@ pub use traits::refine::{
 
 // For measurements.
 #[doc(hidden)]
-pub use edit::edit_at_triangle::edit_at_triangle;
+pub use edit::edit_at_face::edit_at_face;
 pub use tables::probe::{Access, AccessKind, Probe, Traced, Untraced};
 pub use traits::measured::Measured;
 

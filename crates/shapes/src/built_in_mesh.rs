@@ -19,7 +19,8 @@ const RINGS: [f64; 3] = [0.14, 0.10, 0.18];
 /// Radii of the two balls on each axis, in positive and negative direction.
 const BALLS: [[f64; 2]; 3] = [[0.36, 0.20], [0.26, 0.42], [0.15, 0.31]];
 
-/// Spacing of the lattice, for 20,000 faces.
+/// Number of faces of the built-in mesh, and the spacing of its lattice.
+pub(crate) const FACES: usize = 20_000;
 const SPACING: f64 = 0.091_83;
 
 /// Builds an irregular closed triangle mesh of genus 7 with 20,000 faces. The solid is three
@@ -32,8 +33,16 @@ const SPACING: f64 = 0.091_83;
 ///
 /// Never panics: the parameters are fixed, and a test builds this mesh.
 pub fn built_in_mesh() -> PolygonMesh {
-    let mesh = rings_and_balls().and_then(|field| field.polygonised_at(SPACING));
-    mesh.expect("the fixed parameters are within all ranges")
+    with_faces(FACES).expect("the fixed parameters are within all ranges")
+}
+
+/// Builds the surface of the same solid from about `faces` triangles. With [`FACES`], it is the built-in mesh.
+pub(crate) fn with_faces(faces: usize) -> Result<PolygonMesh, ShapeError> {
+    let field = rings_and_balls()?;
+    match faces {
+        FACES => field.polygonised_at(SPACING),
+        other => field.polygonised(other),
+    }
 }
 
 fn rings_and_balls() -> Result<Field, ShapeError> {

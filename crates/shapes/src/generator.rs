@@ -142,9 +142,9 @@ const TORUS: &[Parameter] = &[
 const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_SEGMENTS);
 const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SEGMENTS);
 /// The number of triangles. With fewer than `min` triangles, thin parts of the shape would be lost.
-const fn faces(min: usize) -> Parameter {
+const fn faces(default: usize, min: usize) -> Parameter {
     let meaning = "number of triangles, to within 5 % or 20 triangles";
-    Parameter::count("faces", meaning, 5_000, min, MAX_FACES)
+    Parameter::count("faces", meaning, default, min, MAX_FACES)
 }
 
 /// All shapes, in the order of the help text.
@@ -332,20 +332,20 @@ pub const GENERATORS: &[Generator] = &[
     Generator {
         name: "blobs",
         summary: "a sum of Gaussian bells, triangulated by marching tetrahedra",
-        parameters: &[faces(MIN_FACES)],
+        parameters: &[faces(5_000, MIN_FACES)],
         build: |v| blobs()?.polygonised(count(v[0])),
     },
     Generator {
         name: "csg",
         summary: "the intersection of a cube and a ball minus three bars: genus 5",
-        parameters: &[faces(1_000)],
+        parameters: &[faces(5_000, 1_000)],
         build: |v| csg()?.polygonised(count(v[0])),
     },
     Generator {
         name: "smooth-union",
         summary: "two linked rings that blend where they meet",
         parameters: &[
-            faces(1_500),
+            faces(5_000, 1_500),
             Parameter {
                 name: "alpha",
                 meaning: "sharpness of the blend",
@@ -360,8 +360,8 @@ pub const GENERATORS: &[Generator] = &[
     Generator {
         name: "built-in-mesh",
         summary: "the irregular mesh that a study uses if no file is given",
-        parameters: NONE,
-        build: |_| Ok(built_in_mesh::built_in_mesh()),
+        parameters: &[faces(built_in_mesh::FACES, 6_000)],
+        build: |v| built_in_mesh::with_faces(count(v[0])),
     },
 ];
 

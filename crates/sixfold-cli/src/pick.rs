@@ -4,7 +4,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_results::{BreakEven, Failed, OwnBytes, OwnData, PickReport, Ranked, Results};
+use sixfold_results::{
+    BreakEven, Failed, OwnBytes, OwnData, PickReport, Ranked, Results, Standing,
+};
 use sixfold_study::{
     ElementKind, Part, PickSettings, Prediction, ProgramSettings, StudyMesh, Suite, Trace, Workload,
 };
@@ -295,11 +297,11 @@ fn ranking(report: &PickReport) -> String {
         .ranking
         .iter()
         .all(|ranked| ranked.estimated || ranked.has_enough_samples());
-    let ties = report.ranking.iter().filter(|r| r.tied_with_best).count();
+    let tied = || report.ranking[1..].iter().filter(|r| r.tied_with_best);
     let mut times = Vec::new();
     let mut ratios = Vec::new();
     let is_measured = report.ranking.iter().any(|ranked| !ranked.estimated);
-    for ranked in &report.ranking {
+    for (place, ranked) in report.ranking.iter().enumerate() {
         let ratio = ranked.shown_ratio(&report.ranking[0]);
         if ranked.estimated {
             let sign = signs.record('≥');
@@ -316,12 +318,18 @@ fn ranking(report: &PickReport) -> String {
             false => String::new(),
         };
         times.push(format!("{sign}{}", duration(ranked.ns_per_operation)));
-        let standing = match (ranked.tied_with_best && has_winner, ties) {
-            (false, _) => String::new(),
-            (true, 1) => signs.record('*').into(),
-            (true, _) => signs.record('=').into(),
+        // The fastest is as sure as those that it shares the first place with.
+        let is_equal = match place {
+            0 => tied().all(Ranked::is_equal_to_best),
+            _ => ranked.is_equal_to_best(),
         };
-        ratios.push(format!("{standing}{}", figure(ratio)));
+        let standing = match ranked.tied_with_best && has_winner {
+            false => None,
+            true if tied().next().is_none() => Some(Standing::Best),
+            true if is_equal => Some(Standing::Equal),
+            true => Some(Standing::Undecided),
+        };
+        ratios.push(format!("{}{}", signs.standing(standing), figure(ratio)));
     }
     let of = |figure: &dyn Fn(&Ranked) -> String| -> Vec<String> {
         report.ranking.iter().map(figure).collect()

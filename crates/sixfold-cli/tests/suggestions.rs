@@ -101,7 +101,7 @@ fn advice_fits_the_command_and_the_mesh() {
 fn a_workload_with_edits_recommends_an_editable_type() {
     let sixfold = Sixfold::new();
     run_ok(&sixfold, &["generate", "geodesic", "-o", "ball.obj"]);
-    for workload in ["decimation", "remeshing"] {
+    for workload in ["decimation", "remeshing", "modelling"] {
         let pick = ["pick", "ball.obj", "--workload", workload, "--rounds", "2"];
         let said = run_ok(&sixfold, &pick).stdout.replace('\n', " ");
         let to_use = said.split("To use `").nth(1).expect("a type");

@@ -3,7 +3,7 @@
 use crate::workload::Workload;
 
 /// The names and the texts of the files.
-const FILES: [(&str, &str); 14] = [
+const FILES: [(&str, &str); 15] = [
     (
         "rendering-upload",
         include_str!("../workloads/rendering-upload.toml"),
@@ -19,6 +19,7 @@ const FILES: [(&str, &str); 14] = [
     ("smoothing", include_str!("../workloads/smoothing.toml")),
     ("remeshing", include_str!("../workloads/remeshing.toml")),
     ("decimation", include_str!("../workloads/decimation.toml")),
+    ("modelling", include_str!("../workloads/modelling.toml")),
     ("subdivision", include_str!("../workloads/subdivision.toml")),
     (
         "region-growing",

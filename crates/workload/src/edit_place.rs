@@ -1,10 +1,10 @@
-//! Chooses faces of a triangle mesh that are far apart, so that edits at these faces do not affect
+//! Chooses faces of a mesh that are far apart, so that edits at these faces do not affect
 //! each other.
 
 use sixfold::{
     Edit, FaceId, FaceVertexMesh, MeshEdit, Point, PolygonMesh, Refusal, Representation,
 };
-use sixfold_core::{EditOf, edit_at_triangle};
+use sixfold_core::{EditOf, edit_at_face};
 
 /// Returns at most `max_count` faces, spread over the mesh. The surroundings of two faces share no
 /// vertices. The surroundings of a face are all faces that touch a corner of the face.
@@ -49,7 +49,7 @@ const fn gcd(mut a: usize, mut b: usize) -> usize {
     a
 }
 
-/// Returns an edit of the given kind at face `f` of `polygons`, a triangle. Prepares `mesh` for it.
+/// Returns an edit of the given kind at face `f` of `polygons`. Prepares `mesh` for it.
 pub(crate) fn prepare_edit<M: Representation + MeshEdit>(
     mesh: &mut M,
     polygons: &PolygonMesh,
@@ -57,10 +57,10 @@ pub(crate) fn prepare_edit<M: Representation + MeshEdit>(
     f: FaceId,
 ) -> Result<EditOf<M>, Refusal<M>> {
     let ids = polygons.faces().face(f);
-    let corners = [0, 1, 2].map(|i| M::vertex_handle(polygons, ids[i]));
-    let [a, b, c] = [0, 1, 2].map(|i: usize| polygons.position(ids[i]));
-    let at = (a + b + c) / 3.0 + Point::splat(1e-3);
-    edit_at_triangle(mesh, edit, M::face_handle(polygons, f), corners, at)
+    let corners: Vec<M::Vertex> = (ids.iter().map(|&v| M::vertex_handle(polygons, v))).collect();
+    let sum: Point = ids.iter().map(|&v| polygons.position(v)).sum();
+    let at = sum / ids.len() as f32 + Point::splat(1e-3);
+    edit_at_face(mesh, edit, M::face_handle(polygons, f), &corners, at)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use sixfold_core::{
     Edit, Measured, MeshEdit, Point, PolygonMesh, QueryCost, Refusal, Representation, Traced,
-    edit_at_triangle,
+    edit_at_face,
 };
 
 use super::scripts::on_random_scripts;
@@ -159,11 +159,11 @@ where
             .faces()
             .nth((quarter * count / 4).max(2))
             .expect("a face");
-        let corners = triangle_corners(mesh.face_vertices(f));
+        let corners: Vec<M::Vertex> = mesh.face_vertices(f).collect();
         let refused = |refusal: Refusal<M>| -> ! {
             panic!("{}: {edit} refused on a torus: {refusal}", M::NAME)
         };
-        let call = edit_at_triangle(&mut mesh, edit, f, corners, at);
+        let call = edit_at_face(&mut mesh, edit, f, &corners, at);
         let call = call.unwrap_or_else(|refusal| refused(refusal));
         let probe = Traced::default();
         let mut probed = mesh.probed(probe.clone());
@@ -174,9 +174,4 @@ where
         max = max.max(probe.take().len());
     }
     max
-}
-
-fn triangle_corners<V: Copy>(corners: impl Iterator<Item = V>) -> [V; 3] {
-    let corners: Vec<V> = corners.collect();
-    <[V; 3]>::try_from(corners.as_slice()).expect("a triangle")
 }

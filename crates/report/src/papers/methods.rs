@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use sixfold_results::launches::{ALIKE, LASTING_IN_TIMES};
+use sixfold_results::launches::{ALIKE, LASTING_IN_RATIOS, LASTING_IN_TIMES};
 use sixfold_results::numbers::{bytes, counted, grouped};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{
@@ -430,8 +430,8 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
                 "Intervals of results with several launches are {confidence} confidence intervals of the mean of the logarithms over the \
                  launches, by Student's distribution; a ratio is formed within each launch (Kalibera and Jones 2013, 2020), and \
                  its mean leaves out the largest and the smallest fifth (Tukey and McLaughlin 1963). The variance of a mean is \
-                 {ALIKE} times that of independent launches. The intervals of times also include {LASTING_IN_TIMES} of the \
-                 variance from launch to launch, for what differs from study to study."
+                 {ALIKE} times that of independent launches. For what differs from study to study, the intervals of ratios also \
+                 include {LASTING_IN_RATIOS} of the variance from launch to launch, and those of times {LASTING_IN_TIMES}."
             ),
         );
     }

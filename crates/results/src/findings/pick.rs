@@ -276,6 +276,12 @@ impl Ranked {
         has_enough(self.samples, &self.launch_ns)
     }
 
+    /// Returns whether the whole interval of the ratio to the fastest lies within 5 % of 1.
+    pub fn is_equal_to_best(&self) -> bool {
+        let interval = self.ci_low.zip(self.ci_high);
+        interval.is_some_and(|(low, high)| EQUAL_UP_TO.recip() <= low && high <= EQUAL_UP_TO)
+    }
+
     /// Returns the quotient of the shown times of this backend and of `other`, for tables and
     /// sentences that show the times.
     pub fn shown_ratio(&self, other: &Self) -> f64 {

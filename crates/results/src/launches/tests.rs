@@ -112,6 +112,8 @@ fn the_error_of_a_trimmed_mean_is_that_of_its_winsorised_values() {
 
 /// Correlation of what differs from launch to launch with that of the launch before.
 const LIKENESS: f64 = 0.2;
+/// What differs from study to study, for each backend.
+const HOURS: f64 = 0.006;
 /// Probability and factor of a stall: all of a launch is slow.
 const STALL: (f64, f64) = (0.1, 1.5);
 
@@ -120,6 +122,7 @@ fn study(launches: usize, stalls: bool, random: &mut ChaCha8Rng) -> [Vec<Option<
     let mut values = [const { Vec::new() }; 2];
     // Addresses and pages differ from launch to launch, for each backend.
     let mut own = [(); 2].map(|()| normal(random, LAUNCHING.launches));
+    let hour = [(); 2].map(|()| normal(random, HOURS));
     let innovation = LAUNCHING.launches * (1.0 - LIKENESS * LIKENESS).sqrt();
     for _ in 0..launches {
         let stall = if stalls && uniform(random) < STALL.0 {
@@ -131,7 +134,7 @@ fn study(launches: usize, stalls: bool, random: &mut ChaCha8Rng) -> [Vec<Option<
         let samples = [0, 1].map(|backend| {
             let true_ns = [TRUE_NS, TRUE_NS * TRUE_RATIO][backend];
             own[backend] = LIKENESS * own[backend] + normal(random, innovation);
-            let own = stall * own[backend].exp();
+            let own = stall * (hour[backend] + own[backend]).exp();
             let times = LAUNCHING.times(&common, true_ns * own, random);
             (0..)
                 .zip(times.into_iter().map(Time::from_wall_ns))

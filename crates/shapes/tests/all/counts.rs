@@ -405,6 +405,10 @@ fn tori_surfaces_of_any_genus_and_the_moebius_strip() {
 #[test]
 fn the_built_in_mesh_is_the_same_on_every_machine() {
     let mesh = sixfold_shapes::built_in_mesh();
+    let generated = sixfold_shapes::generator("built-in-mesh").expect("a shape");
+    let generated = generated.build(&[]).expect("the default number of faces");
+    assert_eq!(generated.positions(), mesh.positions());
+    assert_eq!(generated.faces().corners(), mesh.faces().corners());
     let (v, e, f) = (
         mesh.vertex_count(),
         3 * mesh.face_count() / 2,

@@ -209,6 +209,7 @@ fn small_targets_keep_the_topology_of_the_recipe() {
     for (name, genus, targets) in [
         ("csg", 5, [1_000.0, 1_111.0, 1_500.0, 2_345.0]),
         ("smooth-union", 2, [1_500.0, 1_777.0, 2_100.0, 2_345.0]),
+        ("built-in-mesh", 7, [6_000.0, 6_543.0, 7_000.0, 7_777.0]),
     ] {
         for target in targets {
             let generator = sixfold_shapes::generator(name).expect("listed");

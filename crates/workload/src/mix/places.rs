@@ -17,7 +17,7 @@ const MAX_PLACES: usize = 512;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum EditPlaceError {
-    /// A face is not a triangle.
+    /// A face is not a triangle, and the edit is one of triangles.
     #[error("face {face} has {degree} corners, and {edit} needs triangles: triangulate the mesh")]
     NotATriangle {
         edit: Edit,
@@ -57,10 +57,14 @@ impl EditPlaces {
                 _ => (Edit::Compact, 0.0), // unreachable: `edits` returns only edits
             })
             .collect();
-        let Some(&(edit, _)) = edits.first() else {
+        if edits.is_empty() {
             return Ok(Self::default());
-        };
-        if let Some((face, degree)) = polygons.first_polygon() {
+        }
+        let of_triangles =
+            |(edit, _): &&(Edit, f64)| matches!(edit, Edit::BisectEdge | Edit::FlipEdge);
+        if let Some(&(edit, _)) = edits.iter().find(of_triangles)
+            && let Some((face, degree)) = polygons.first_polygon()
+        {
             return Err(EditPlaceError::NotATriangle { edit, face, degree });
         }
         let too_small = EditPlaceError::TooSmall { edits: edits.len() };

@@ -80,6 +80,9 @@ struct Header<'a> {
     protocol: u32,
     holds: bool,
     library: &'a str,
+    /// The bytes that the library allocated for the mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bytes: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
     /// The allocator, if an environment variable can make this allocator keep its pages.
@@ -120,17 +123,23 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
     // Some libraries panic if they cannot hold the mesh.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| ()));
-    let built = panic::catch_unwind(|| operations::Runner::new(input.clone(), C::build(&input)?));
+    let built = panic::catch_unwind(|| {
+        let before = allocated();
+        let structure = C::build(&input)?;
+        let bytes = allocated().zip(before).map(|(now, before)| now - before);
+        Ok((operations::Runner::new(input.clone(), structure)?, bytes))
+    });
     panic::set_hook(hook);
     let built = built.unwrap_or_else(|payload| Err(panic_message(payload.as_ref())));
     write_line(&Header {
         protocol: 1,
         holds: built.is_ok(),
         library: C::LIBRARY,
+        bytes: built.as_ref().ok().and_then(|(_, bytes)| *bytes),
         reason: built.as_ref().err().cloned(),
         heap: cfg!(all(target_os = "linux", target_env = "gnu")).then_some("glibc"),
     })?;
-    let Ok(mut runner) = built else {
+    let Ok((mut runner, _)) = built else {
         return Ok(());
     };
     for line in io::stdin().lock().lines() {
@@ -143,6 +152,18 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
+}
+
+/// Returns the bytes that the program has allocated, if the allocator says it.
+fn allocated() -> Option<usize> {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        // SAFETY: the function has no arguments and only reads the counters of the allocator, which it locks.
+        let now = unsafe { libc::mallinfo2() };
+        Some(now.uordblks + now.hblkhd)
+    }
+    #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+    None
 }
 
 fn panic_message(payload: &(dyn Any + Send)) -> String {

@@ -128,11 +128,7 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
         let others = report.ranking[1..].iter();
         others.filter(|ranked| ranked.tied_with_best)
     };
-    let is_equal = |ranked: &Ranked| {
-        let interval = ranked.ci_low.zip(ranked.ci_high);
-        interval.is_some_and(|(low, high)| EQUAL_UP_TO.recip() <= low && high <= EQUAL_UP_TO)
-    };
-    let all_equal = tied().all(is_equal);
+    let all_equal = tied().all(Ranked::is_equal_to_best);
     let tied: Vec<String> = tied().map(name).collect();
     let each = duration(best.ns_per_operation);
     let workload = &report.workload.name;

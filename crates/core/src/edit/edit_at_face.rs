@@ -1,4 +1,4 @@
-//! Edits at a triangle, for measurements.
+//! Edits at a face, for measurements.
 
 use std::convert::Infallible;
 
@@ -7,8 +7,8 @@ use crate::edit::edit_call::{EditArguments, EditCall, EditOf};
 use crate::edit::edit_kind::Edit;
 use crate::edit::mesh_edit::{MeshEdit, Refusal};
 
-/// Returns an edit of the given kind at the triangle `f`. `corners` are the corners of `f`, and a new
-/// or moved vertex is at `at`. Prepares the mesh, so that the edit is possible: before `add_face` and
+/// Returns an edit of the given kind at the face `f`. `corners` are the corners of `f` in order, and a
+/// new or moved vertex is at `at`. Prepares the mesh, so that the edit is possible: before `add_face` and
 /// `compact`, removes `f`; before `split_face`, dissolves the edge of the first two corners.
 ///
 /// # Errors
@@ -17,12 +17,12 @@ use crate::edit::mesh_edit::{MeshEdit, Refusal};
 ///
 /// # Panics
 ///
-/// Panics if `f` is not a triangle with these corners.
-pub fn edit_at_triangle<M: MeshEdit>(
+/// Panics if the first two of `corners` are not the ends of a side of `f`.
+pub fn edit_at_face<M: MeshEdit>(
     mesh: &mut M,
     edit: Edit,
     f: M::Face,
-    corners: [M::Vertex; 3],
+    corners: &[M::Vertex],
     at: Point,
 ) -> Result<EditOf<M>, Refusal<M>> {
     let mut face = f;
@@ -30,11 +30,11 @@ pub fn edit_at_triangle<M: MeshEdit>(
         Edit::AddFace | Edit::Compact => mesh.remove_face(f)?,
         Edit::SplitFace => {
             let e = mesh.edge_between(corners[0], corners[1]);
-            face = mesh.dissolve_edge(e.expect("a side of the triangle"))?;
+            face = mesh.dissolve_edge(e.expect("a side of the face"))?;
         }
         _ => {}
     }
-    let mut arguments = AtTriangle {
+    let mut arguments = AtFace {
         mesh,
         face,
         corners,
@@ -45,17 +45,17 @@ pub fn edit_at_triangle<M: MeshEdit>(
     Ok(call)
 }
 
-/// The arguments of edits at a triangle: its first corner, and the edge to the second one.
-struct AtTriangle<'m, M: MeshEdit> {
+/// The arguments of edits at a face: its first corner, and the edge to the second one.
+struct AtFace<'m, M: MeshEdit> {
     mesh: &'m M,
     face: M::Face,
-    corners: [M::Vertex; 3],
+    corners: &'m [M::Vertex],
     at: Point,
     /// True after the left neighbour was asked for.
     has_left: bool,
 }
 
-impl<M: MeshEdit> EditArguments for AtTriangle<'_, M> {
+impl<M: MeshEdit> EditArguments for AtFace<'_, M> {
     type Vertex = M::Vertex;
     type Edge = M::Edge;
     type Face = M::Face;
@@ -85,7 +85,7 @@ impl<M: MeshEdit> EditArguments for AtTriangle<'_, M> {
 
     fn edge(&mut self) -> Result<M::Edge, Infallible> {
         let edge = self.mesh.edge_between(self.corners[0], self.corners[1]);
-        Ok(edge.expect("a side of the triangle"))
+        Ok(edge.expect("a side of the face"))
     }
 
     fn face(&mut self) -> Result<M::Face, Infallible> {
