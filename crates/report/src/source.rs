@@ -50,7 +50,9 @@ fn samples(findings: &[&Finding]) -> Option<String> {
     let measured = figures
         .iter()
         .filter(|f| matches!(f.status, Status::Measured | Status::Sampled));
-    let counts: BTreeSet<usize> = measured.map(|figure| figure.row.samples).collect();
+    // A document may be without the samples of the single operations of a mix.
+    let counts = measured.map(|figure| figure.row.samples);
+    let counts: BTreeSet<usize> = counts.filter(|&count| count > 0).collect();
     let range = match (counts.first(), counts.last()) {
         (Some(least), Some(most)) if least == most => Some(format!(
             "{} for each time",

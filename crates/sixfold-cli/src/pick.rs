@@ -25,6 +25,8 @@ use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, saniti
 use crate::workloads::workload;
 use sixfold_results::numbers::{approximate, counted, duration, figure, grouped, rounded_down};
 
+/// How much longer than building it takes to prepare a mix on all backends, with copies of the mesh, and to run it once.
+const PREPARATION: usize = 4;
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
 
@@ -60,7 +62,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     // The operations of the mix are timed together and one by one, and building.
     let timed = settings.workload.mix.len() + 2;
     let mean = faces.sum::<usize>() / study_meshes.len();
-    let work = Work::new(mean, timed, &settings.backends);
+    let work = Work::new(PREPARATION * mean, timed, &settings.backends);
     let plan = launching.plan(settings.effort, work.times(study_meshes.len()))?;
     warn_of_debug_build();
     if Launch::current().is_none() {
