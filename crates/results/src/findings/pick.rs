@@ -245,6 +245,10 @@ pub struct Ranked {
     pub parts: Vec<PartCost>,
     /// The number of rounds in which the workload was timed on this backend.
     pub samples: usize,
+    /// True if the time is that of a single run with cold caches, because there was no time for a round. In JSON, left out
+    /// if it is false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub warm_up_only: bool,
     /// The largest number of page faults in a sample; `None` if page faults were not counted.
     pub faults: Option<u64>,
     /// The names of the packages that a program needs as dependencies to use this backend.
@@ -488,6 +492,7 @@ impl PickReport {
             ratio_ci_high: ranked.ci_high,
             faults: ranked.faults,
             samples: ranked.samples,
+            warm_up_only: ranked.warm_up_only,
             ..row(
                 self.whole(),
                 unit,

@@ -86,7 +86,7 @@ impl Group<'_> {
                 launch_ns: Vec::new(),
                 samples: samples.len(),
                 runs_per_sample: entry.runs,
-                warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
+                warm_up_only: entry.is_warm_up_only(),
                 by_name_only: entry.by_name_only,
                 faults: most_faults(entry.samples.iter().map(|(_, time)| time)),
                 retaken: entry.retaken,

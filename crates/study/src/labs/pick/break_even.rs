@@ -1,7 +1,7 @@
 //! The number of operations after which building a structure has paid off.
 
 use sixfold_results::{BreakEven, Confidence, Ranked, Time};
-use sixfold_workload::Task;
+use sixfold_workload::{Operation, Task};
 
 use crate::engine::measure::Entry;
 use crate::labs::pick::backend::Candidate;
@@ -21,6 +21,18 @@ impl MeasuredMix<'_> {
     pub(crate) fn entry(&self, task: Task) -> Option<&Entry> {
         let mut entries = self.entries.iter().copied();
         entries.find(|entry| entry.job.task == task)
+    }
+
+    /// Returns whether `samples` contain a single run with cold caches.
+    pub(crate) fn is_warm_up_only(&self) -> bool {
+        match self.entry(Task::Mix).or_else(|| self.entry(Task::Program)) {
+            Some(whole) => whole.is_warm_up_only(),
+            None => {
+                let parts = self.entries.iter();
+                let mut parts = parts.filter(|e| e.operation() != Some(Operation::Build));
+                parts.any(|entry| entry.is_warm_up_only())
+            }
+        }
     }
 
     /// Returns whether `samples` contain an estimate, and so are a lower bound.

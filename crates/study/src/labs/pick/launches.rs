@@ -178,6 +178,7 @@ fn pool_ranked(of_each: &[&Ranked], pooled: &PooledRows, whole: &str) -> Option<
         estimated: mix.median_ns.is_none(),
         parts: parts.collect(),
         samples: mix.samples,
+        warm_up_only: mix.warm_up_only,
         faults: mix.faults,
         ..(*first).clone()
     })

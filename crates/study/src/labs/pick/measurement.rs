@@ -248,6 +248,7 @@ impl Evaluation<'_> {
             estimated: m.is_bound(),
             parts: self.plan.parts(m),
             samples: m.samples.len(),
+            warm_up_only: m.is_warm_up_only(),
             faults: m.most_faults(),
             crates: type_paths.iter().map(|path| package_of(path)).collect(),
             types: type_paths.iter().map(|&path| path.to_owned()).collect(),
