@@ -156,8 +156,8 @@
 //!
 //! | structure | holds | bytes per vertex | choose it to |
 //! |---|---|---|---|
-//! | [`HalfEdgeMesh`] | oriented manifolds | 96 | walk around vertices and edges; change connectivity |
-//! | [`CornerTable`] | oriented manifolds of triangles | 64 | walk over triangles with little memory |
+//! | [`HalfEdgeMesh`] | oriented manifolds | 96 | walk around vertices and edges; edit polygons; subdivide |
+//! | [`CornerTable`] | oriented manifolds of triangles | 64 | edit triangles, or walk over them, with little memory |
 //! | [`FaceVertexMesh`] | any polygons | 68 | collect the faces at vertices: normals, matrix assembly |
 //! | [`WingedEdgeMesh`] | oriented manifolds | 120 | work on edges themselves |
 //! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces |
@@ -165,9 +165,9 @@
 //!
 //! Polygon soups and indexed face sets scan all faces to find neighbours. The column *bytes per
 //! vertex* applies to large closed triangle meshes. If you do not know which structure to choose,
-//! use [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for other meshes. The command
-//! `sixfold pick` measures a workload on your mesh. [`structures!`] lists all structures, and
-//! [`visit`] selects one structure at run time.
+//! use [`CornerTable`] for manifolds of triangles, [`HalfEdgeMesh`] for manifolds of polygons and
+//! [`FaceVertexMesh`] for other meshes. The command `sixfold pick` measures a workload on your mesh.
+//! [`structures!`] lists all structures, and [`visit`] selects one structure at run time.
 //!
 //! If a program queries a few relations many times and does not change the connectivity, make flat
 //! tables of these relations from any structure, with the crate `sixfold-relation-table`.
