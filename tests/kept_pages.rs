@@ -13,7 +13,7 @@ use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
-use sixfold_results::{HeapReport, Policy};
+use sixfold_results::{Confidence, HeapReport, Policy};
 use sixfold_study::{
     Backend, BackendRunner, Effort, HeapGuard, MachineClock, Operation, PickError, PickSettings,
     Series, Settings, Start, StudyError, StudyMesh, built_in, free_memory, pages, pick, study,
@@ -248,6 +248,7 @@ fn pick_settings() -> PickSettings {
         needs: Vec::new(),
         max_memory: None,
         effort: Effort::Rounds(ROUNDS),
+        confidence: Confidence::default(),
         seed: 1,
         heap: Policy::Kept,
     }

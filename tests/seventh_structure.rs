@@ -10,7 +10,7 @@ use sixfold::{
     Creases, EditableIndexedFaceSet, FaceVertexMesh, PolygonMesh, Representation,
     repeat_for_structures, shapes,
 };
-use sixfold_results::{Agreement, Need, PickReport, Policy, Standing};
+use sixfold_results::{Agreement, Confidence, Need, PickReport, Policy, Standing};
 use sixfold_study::{
     Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Operation, PickSettings,
     Refiner, Series, Settings, SingleEdit, StudyError, StudyMesh, SubdivisionJob, Way, built_in,
@@ -119,6 +119,7 @@ fn pick_with(seventh: Backend, others: &[&str], workload: &str, needs: &[Need]) 
         needs: needs.to_vec(),
         max_memory: None,
         effort: Effort::Rounds(NonZeroU32::MIN),
+        confidence: Confidence::default(),
         seed: 7,
         heap: Policy::Kept,
     };

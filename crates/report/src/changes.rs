@@ -183,7 +183,8 @@ impl<'c> Ranked<'c> {
         let relative = self.changes.relative.then_some("÷ median");
         let mut columns = vec!["before", "after", "after ÷ before"];
         columns.extend(relative);
-        columns.extend(["95 %", "can tell", "samples", "verdict"]);
+        let confidence = self.changes.confidence.to_string();
+        columns.extend([&*confidence, "can tell", "samples", "verdict"]);
         let mut table = self.table(&columns);
         for row in rows {
             let mut cells = self.cells(&row.measurement);

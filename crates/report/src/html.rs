@@ -10,6 +10,7 @@ use crate::{ReportPage, Section};
 use tables::{operations_table, plain_table, summary_table};
 
 const STYLE: &str = include_str!("html/style.css");
+/// The script of the table of operations. Its texts say 95 % for the confidence of the intervals.
 const SCRIPT: &str = include_str!("html/script.js");
 
 /// Width of a picture that scrolls on small screens, in pixels. Smaller pictures shrink.
@@ -22,6 +23,7 @@ impl ReportPage {
     /// Returns the page as HTML without external resources.
     pub fn html(&self) -> String {
         let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
+        let script = SCRIPT.replace("95 %", &self.operations.confidence.to_string());
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -57,7 +59,7 @@ impl ReportPage {
                         }
                         (self.method())
                     }
-                    script { (PreEscaped(SCRIPT)) }
+                    script { (PreEscaped(script)) }
                 }
             }
         };

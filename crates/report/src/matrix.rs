@@ -2,8 +2,8 @@
 
 use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_results::{
-    FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Pool, Pooled, Quotient, RefusalKind, Report,
-    ResultRow, Standing, mean_quotients, operations,
+    Confidence, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Pool, Pooled, Quotient,
+    RefusalKind, Report, ResultRow, Standing, mean_quotients, operations,
 };
 
 use crate::figure::Table;
@@ -30,11 +30,11 @@ pub(crate) struct Cell {
     pub(crate) source: Source,
     /// The time divided by that of the fastest backend; a lower bound if `source` is a bound.
     pub(crate) ratio: Option<f64>,
-    /// The 95 % interval of `ratio`; `None` for the fastest, whose ratio is 1 by definition.
+    /// The interval of `ratio`; `None` for the fastest, whose ratio is 1 by definition.
     pub(crate) interval: Option<[f64; 2]>,
     /// Time per element in nanoseconds.
     pub(crate) ns: Option<f64>,
-    /// The 95 % interval of `ns`.
+    /// The interval of `ns`.
     pub(crate) ns_interval: Option<[f64; 2]>,
     /// Time per element of the first run, on fresh pages, if it differs clearly from `ns`.
     pub(crate) first_ns: Option<f64>,
@@ -69,6 +69,8 @@ pub(crate) struct Line {
 pub(crate) struct Matrix {
     pub(crate) backends: Vec<String>,
     pub(crate) lines: Vec<Line>,
+    /// The confidence of all intervals.
+    pub(crate) confidence: Confidence,
 }
 
 impl Cell {
@@ -271,6 +273,7 @@ impl Matrix {
         Self {
             lines: lines.collect(),
             backends,
+            confidence: study.run.settings.confidence,
         }
     }
 
@@ -305,6 +308,9 @@ impl Matrix {
         Self {
             lines: lines.collect(),
             backends,
+            confidence: studies
+                .first()
+                .map_or_else(Confidence::default, |study| study.run.settings.confidence),
         }
     }
 }

@@ -16,6 +16,7 @@ use std::io;
 
 use serde::Serialize;
 
+use crate::confidence::Confidence;
 use crate::document::{Results, SCHEMA};
 use crate::environment::Environment;
 use crate::finding::Finding;
@@ -69,6 +70,9 @@ pub struct Changes {
     pub relative: bool,
     /// Ratios of times up to this value always count as equal.
     pub noise: f64,
+    /// The confidence of the intervals, which is that of the first document; in JSON, left out if it is 0.95.
+    #[serde(skip_serializing_if = "Confidence::is_default")]
+    pub confidence: Confidence,
     /// The measured times that both documents have, in the order of the first document.
     pub rows: Vec<Change>,
     /// The counts of bytes that differ.
@@ -150,10 +154,10 @@ pub struct Change {
     pub after_samples: usize,
     /// The time in the second document divided by the time in the first.
     pub ratio: f64,
-    /// Lower end of the 95 % confidence interval of `ratio`; `None` if a document has fewer than
+    /// Lower end of the confidence interval of `ratio`; `None` if a document has fewer than
     /// two launches with this time, or one launch with fewer than three samples.
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % confidence interval of `ratio`.
+    /// Upper end of the confidence interval of `ratio`.
     pub ci_high: Option<f64>,
     /// The smallest ratio that this comparison can tell from chance; `None` if a document has fewer than two
     /// launches with this time.
@@ -265,9 +269,10 @@ pub fn compare(
         let both = first.in_order.iter().map(|a| (a, second.get(&a.key)));
         both.filter_map(|(a, b)| Some((a, b?)))
     };
-    if in_both().next().is_none() {
+    let Some((common, _)) = in_both().next() else {
         return Err(CompareError::NothingInCommon);
-    }
+    };
+    let confidence = common.finding.run().settings.confidence;
     in_both().try_for_each(|(a, b)| check_memory(a.finding, b.finding))?;
 
     let CompareSettings {
@@ -282,7 +287,7 @@ pub fn compare(
     };
     let mut compared = Vec::new();
     for pairs in pairs.chunk_by(of_one) {
-        compared.extend(changes(pairs, relative));
+        compared.extend(changes(pairs, relative, confidence));
     }
     let overall = median(compared.iter().map(|(row, _)| row.ratio).collect());
     let level = FALSE_ALARM / (compared.len().max(1) * comparisons.max(1)) as f64;
@@ -307,6 +312,7 @@ pub fn compare(
         overall,
         relative,
         noise,
+        confidence,
         rows,
         bytes: bytes(in_both()),
         winners: winners(&first, &second),
@@ -339,7 +345,11 @@ type Pair<'r> = (&'r MeasuredFigure<'r>, &'r MeasuredFigure<'r>);
 
 /// Compares the figures of one finding in both documents, without the verdicts. Leaves out figures without a time
 /// and ratios that are not finite.
-fn changes(pairs: &[Pair<'_>], relative: bool) -> Vec<(Change, Option<StudyChange>)> {
+fn changes(
+    pairs: &[Pair<'_>],
+    relative: bool,
+    confidence: Confidence,
+) -> Vec<(Change, Option<StudyChange>)> {
     let timed = pairs.iter().filter_map(|&(a, b)| {
         let times = [a.figure.row.median_ns?, b.figure.row.median_ns?];
         (times[1] / times[0]).is_finite().then_some((a, b, times))
@@ -349,9 +359,9 @@ fn changes(pairs: &[Pair<'_>], relative: bool) -> Vec<(Change, Option<StudyChang
         ns: *ns,
         launches: [&a.figure.row.launch_ns, &b.figure.row.launch_ns],
     });
-    let found = study_changes(&launches.collect::<Vec<_>>(), relative);
+    let found = study_changes(&launches.collect::<Vec<_>>(), relative, confidence);
     let rows = timed.iter().zip(found.rows);
-    rows.map(|((a, b, ns), change)| (row(a, b, *ns, change), change))
+    rows.map(|((a, b, ns), change)| (row(a, b, *ns, change, confidence), change))
         .collect()
 }
 
@@ -360,11 +370,12 @@ fn row(
     after: &MeasuredFigure<'_>,
     [before_ns, after_ns]: [f64; 2],
     change: Option<StudyChange>,
+    confidence: Confidence,
 ) -> Change {
     let [a, b] = [before, after].map(|measured| &measured.figure);
     let ratio = after_ns / before_ns;
     let of_samples = || {
-        let (value, interval) = quotient(&b.counted_ns(), &a.counted_ns())?;
+        let (value, interval) = quotient(&b.counted_ns(), &a.counted_ns(), confidence)?;
         Some(interval?.map(|end| end / value * ratio))
     };
     let interval = change.map(|change| change.interval).or_else(of_samples);
@@ -437,7 +448,7 @@ pub fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
             .unwrap_or("not known");
         Some(format!("{}, huge pages: {pages}", heap.allocator))
     };
-    let facts = |run: &Run| -> [(&'static str, String); 16] {
+    let facts = |run: &Run| -> [(&'static str, String); 17] {
         let e = &run.environment;
         [
             ("processor", shown(e.cpu_model.as_ref())),
@@ -456,6 +467,7 @@ pub fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
             ("allocator", shown(heap(e).as_ref())),
             ("budget", run.settings.effort_text()),
             ("seed", run.settings.seed.to_string()),
+            ("confidence", run.settings.confidence.to_string()),
         ]
     };
     let pairs = facts(before).into_iter().zip(facts(after));

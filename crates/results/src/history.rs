@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::compare::{
     CompareSettings, Measurement, SettingChange, Verdict, compare, is_or_are, verdict_counts,
 };
+use crate::confidence::Confidence;
 use crate::csv::into_io_error;
 use crate::document::{Results, SCHEMA};
 use crate::finding::Finding;
@@ -39,6 +40,9 @@ pub struct HistoryGroup {
     pub relative: bool,
     /// Ratios of times up to this value count as equal.
     pub noise: f64,
+    /// The confidence of the intervals, which is that of the first document; in JSON, left out if it is 0.95.
+    #[serde(skip_serializing_if = "Confidence::is_default")]
+    pub confidence: Confidence,
     /// The measured times that the first document and another one have, in the order of the first.
     pub rows: Vec<HistoryRow>,
     /// Sentences that describe the changes.
@@ -87,10 +91,10 @@ pub struct HistoryPoint {
     pub median_ns: f64,
     /// The time divided by that in the first document.
     pub ratio: f64,
-    /// Lower end of the 95 % confidence interval of `ratio`; `None` for the first document, and as in
+    /// Lower end of the confidence interval of `ratio`; `None` for the first document, and as in
     /// [`Change`](crate::Change).
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % confidence interval of `ratio`.
+    /// Upper end of the confidence interval of `ratio`.
     pub ci_high: Option<f64>,
     /// Whether the time is shorter than in the first document, longer or equal, or cannot be told.
     pub verdict: Verdict,
@@ -248,12 +252,13 @@ impl HistoryGroup {
         let mut all = vec![document(group[0])];
         let mut rows: Vec<HistoryRow> = Vec::new();
         let mut places: BTreeMap<Measurement, usize> = BTreeMap::new();
-        let mut slower = None;
+        let (mut slower, mut confidence) = (None, Confidence::default());
         for (number, &place) in (2..).zip(&group[1..]) {
             let Ok(mut changes) = compare(first, documents[place].1, settings) else {
                 continue; // its group is of documents that can be compared
             };
             slower = changes.slower_as_a_whole();
+            confidence = changes.confidence;
             changes.environment.retain(|change| change.what != "commit");
             all.push(HistoryDocument {
                 environment: changes.environment,
@@ -296,6 +301,7 @@ impl HistoryGroup {
             documents: all,
             relative: settings.relative,
             noise: settings.noise,
+            confidence,
             rows,
             sentences: Vec::new(),
         };

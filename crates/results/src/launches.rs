@@ -24,7 +24,8 @@ mod rows;
 pub use between::{LASTING_SPEED, LaunchPair, StudyChange, StudyChanges, study_changes};
 pub use rows::{LaunchRows, PooledRows, pool_rows};
 
-use crate::statistics::{Median, median, student};
+use crate::confidence::Confidence;
+use crate::statistics::{MeanError, Median, median};
 
 /// Minimum number of launches for an interval.
 pub const FEWEST_LAUNCHES: usize = 2;
@@ -107,16 +108,20 @@ pub fn times_over_launches(launches: &[&[Option<f64>]]) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// Returns the time `ns` of a backend over all launches with its interval, from its time in each launch.
+/// Returns the time `ns` of a backend over all launches with its error, from its time in each launch.
 /// `None` without launches.
 pub fn time_over_launches(ns: f64, launches: &[Option<f64>]) -> Option<Median> {
     let logs: Vec<f64> = launches.iter().flatten().map(|ns| ns.ln()).collect();
     let least = launches.iter().copied().flatten().min_by(f64::total_cmp)?;
-    let half_width = half_width(&logs, 0, LASTING_IN_TIMES);
-    Some(around(ns, least, half_width))
+    Some(Median {
+        value: ns,
+        least,
+        error: squared_error(&logs, 0, LASTING_IN_TIMES),
+        drift: 0.0,
+    })
 }
 
-/// Returns the ratio of two times over all launches with its interval, from the times in each launch. `None` if
+/// Returns the ratio of two times over all launches with its error, from the times in each launch. `None` if
 /// the ratio is not finite, or if the backends have no launch in common.
 pub fn ratio_over_launches(
     [ns, other_ns]: [f64; 2],
@@ -128,10 +133,12 @@ pub fn ratio_over_launches(
         .collect();
     let least = logs.iter().copied().min_by(f64::total_cmp)?.exp();
     let ratio = ns / other_ns;
-    let half_width = half_width(&logs, trimmed(logs.len()), LASTING_IN_RATIOS);
-    ratio
-        .is_finite()
-        .then(|| around(ratio, least.min(ratio), half_width))
+    ratio.is_finite().then(|| Median {
+        value: ratio,
+        least: least.min(ratio),
+        error: squared_error(&logs, trimmed(logs.len()), LASTING_IN_RATIOS),
+        drift: 0.0,
+    })
 }
 
 /// Returns the difference of two times over all launches with its interval, from the times in each launch.
@@ -139,34 +146,18 @@ pub fn ratio_over_launches(
 pub fn difference_over_launches(
     [ns, other_ns]: [f64; 2],
     [launches, others]: [&[Option<f64>]; 2],
-) -> Option<Median> {
+    confidence: Confidence,
+) -> Option<(f64, Option<[f64; 2]>)> {
     let pairs = launches.iter().zip(others);
     let differences: Vec<f64> = pairs.filter_map(|(a, b)| Some((*a)? - (*b)?)).collect();
-    let least = differences.iter().copied().min_by(f64::total_cmp)?;
+    differences.first()?;
     let value = ns - other_ns;
-    let half_width = half_width(&differences, trimmed(differences.len()), LASTING_IN_RATIOS);
-    Some(Median {
-        value,
-        least: least.min(value),
-        interval: half_width.map(|half| [value - half, value + half]),
-    })
-}
-
-/// Returns half the width of the 95 % interval of the mean of `values` without the `trimmed` smallest and largest
-/// ones, see [`squared_error`].
-fn half_width(values: &[f64], trimmed: usize, lasting: f64) -> Option<f64> {
-    let error = squared_error(values, trimmed, lasting)?;
-    let half_width = student(error.freedom) * error.squared.sqrt();
-    half_width.is_finite().then_some(half_width)
-}
-
-/// The variance of values, or the error of their mean.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MeanError {
-    /// The square of the standard deviation or error.
-    pub(crate) squared: f64,
-    /// The degrees of freedom of the estimate.
-    pub(crate) freedom: f64,
+    let error = squared_error(&differences, trimmed(differences.len()), LASTING_IN_RATIOS);
+    let interval = error.map(|error| {
+        let half = error.half_width(confidence);
+        [value - half, value + half]
+    });
+    Some((value, interval))
 }
 
 impl MeanError {
@@ -219,15 +210,6 @@ pub(crate) fn trimmed(count: usize) -> usize {
 fn trimmed_mean(mut values: Vec<f64>, trimmed: usize) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     mean(values[trimmed..values.len() - trimmed].iter().copied())
-}
-
-/// Returns `value` with the interval of `half_width` on the scale of logarithms.
-fn around(value: f64, least: f64, half_width: Option<f64>) -> Median {
-    Median {
-        value,
-        least,
-        interval: half_width.map(|half| [value * (-half).exp(), value * half.exp()]),
-    }
 }
 
 fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {

@@ -10,6 +10,7 @@
 
 mod compare;
 mod conclusions;
+mod confidence;
 mod corrected;
 mod csv;
 mod document;
@@ -41,6 +42,7 @@ pub use compare::{
     MeasurementPart, NewWinner, SettingChange, Verdict, compare, differences,
 };
 pub use conclusions::{Conclusion, Fate, conclusions};
+pub use confidence::{Confidence, NotAConfidence};
 pub use corrected::corrected_times;
 pub use csv::write_csv_rows;
 pub use document::{Failed, FailureKind, Results, SCHEMA};

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::findings::study::Report;
 use crate::operation::Purpose;
 use means::pooled;
-pub(crate) use means::{half_width, mean_over_sizes, with_errors};
+pub(crate) use means::{confidence, half_width, mean_over_sizes, with_errors};
 pub use means::{operations, overall};
 use sentences::warnings;
 pub use sentences::{leaders, next_best, not_ranked};
@@ -82,10 +82,10 @@ pub struct Overall {
     /// mean over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
     /// 9,999 faces) has the same weight in the mean.
     pub ratio_to_best: f64,
-    /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
+    /// Lower end of the confidence interval of `ratio_to_best`; `None` with fewer than three
     /// meshes.
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % confidence interval of `ratio_to_best`.
+    /// Upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
     /// True if the mean includes estimated times. Estimates are lower bounds, so the mean is one too,
     /// and has no interval.
@@ -99,7 +99,7 @@ pub struct Overall {
     /// Number of meshes on which the fastest is not known: there are too few samples, or a lower bound
     /// is below the shortest measured time.
     pub undecided: usize,
-    /// The half-width of the 95 % interval of the logarithm of `ratio_to_best`, from the intervals of
+    /// The half-width of the interval of the logarithm of `ratio_to_best`, from the intervals of
     /// the times of one mesh; 0 if there are several meshes.
     #[serde(skip)]
     pub(crate) log_error: f64,
@@ -124,10 +124,10 @@ pub struct Pooled {
     /// The time of this backend divided by the time of the fastest measured backend, as the geometric
     /// mean over the meshes. Each range of mesh sizes has the same weight, as in [`Overall`].
     pub ratio_to_best: f64,
-    /// Lower end of the 95 % confidence interval of `ratio_to_best`, at least 1; `None` with fewer
+    /// Lower end of the confidence interval of `ratio_to_best`, at least 1; `None` with fewer
     /// than three meshes, or if the mean is a lower bound.
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % confidence interval of `ratio_to_best`.
+    /// Upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
     /// The time per element in nanoseconds, as the geometric mean over the meshes.
     pub ns_per_element: Option<f64>,

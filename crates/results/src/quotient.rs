@@ -3,7 +3,7 @@
 use crate::findings::study::Report;
 use crate::launches::ratio_over_launches;
 use crate::numbers::shown_ratio;
-use crate::pool::{decade, half_width, mean_over_sizes, with_errors};
+use crate::pool::{confidence, decade, half_width, mean_over_sizes, with_errors};
 use crate::ranking::ratio;
 use crate::rows::{Agreement, ResultRow, Samples};
 use crate::statistics::undisturbed;
@@ -14,7 +14,7 @@ use crate::time::Time;
 pub struct Quotient {
     /// The quotient of the times; over several meshes, the geometric mean.
     pub ratio: f64,
-    /// The 95 % interval of `ratio`: on one mesh, of the ratios within launches, or within the rounds of the only
+    /// The interval of `ratio`: on one mesh, of the ratios within launches, or within the rounds of the only
     /// launch; else of the mean over the meshes. `None` with fewer than two launches, or three samples or meshes.
     pub interval: Option<[f64; 2]>,
     /// The number of meshes.
@@ -40,9 +40,10 @@ impl Report {
                 ratio_over_launches(times.into(), [&own.launch_ns, &other.launch_ns])
             }),
         };
+        let confidence = self.run.settings.confidence;
         Some(Quotient {
             ratio: value,
-            interval: found.and_then(|found| found.moved_to(value).interval),
+            interval: found.and_then(|found| found.moved_to(value).interval(confidence)),
             meshes: 1,
         })
     }
@@ -71,7 +72,8 @@ pub fn mean_quotients(
         let by_size = quotients
             .iter()
             .map(|(study, ratio)| (decade(study), *ratio));
-        let (ratio, interval) = mean_over_sizes(&by_size.collect::<Vec<_>>())?;
+        let by_size: Vec<(u32, f64)> = by_size.collect();
+        let (ratio, interval) = mean_over_sizes(&by_size, confidence(studies))?;
         let half_widths = quotients.iter().map(|(study, _)| {
             let on_mesh = study.quotient(operation, &backends[own], &backends[other])?;
             let [low, high] = on_mesh.interval?;

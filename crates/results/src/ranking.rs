@@ -1,5 +1,6 @@
 //! Ranks backends by their times.
 
+use crate::confidence::Confidence;
 use crate::launches::{FEWEST_LAUNCHES, ratio_over_launches, time_over_launches};
 use crate::rows::Standing;
 use crate::statistics::Median;
@@ -41,19 +42,24 @@ pub struct Rank {
 /// a time has the rank `None`.
 ///
 /// The fastest backend has the smallest corrected time. Its ratio is 1. For the others, see
-/// [`Standing`]: a ratio up to `noise` is not decided.
+/// [`Standing`], which follows from the interval at `confidence`: a ratio up to `noise` is not decided.
 ///
 /// If one of the two has fewer than [`FEWEST_OF_A_WINNER`] samples, the other backend is slower if
 /// its ratio is at least [`CLEAR_DIFFERENCE`]; otherwise its standing is unknown, and the fastest
 /// backend is not known to be the best.
-pub fn rank(samples: &[Vec<(u32, Time)>], times: &[Option<f64>], noise: f64) -> Vec<Option<Rank>> {
+pub fn rank(
+    samples: &[Vec<(u32, Time)>],
+    times: &[Option<f64>],
+    noise: f64,
+    confidence: Confidence,
+) -> Vec<Option<Rank>> {
     let enough = |b: usize| samples[b].len() >= FEWEST_OF_A_WINNER;
     let rank = |b: usize, best: usize| {
         let (ns, best_ns) = (times[b]?, times[best]?);
         let ratio = quotient([&samples[b], &samples[best]], [ns, best_ns])?;
         Some((time(&samples[b], ns)?, ratio, enough(b) && enough(best)))
     };
-    ranks(times, noise, rank)
+    ranks(times, noise, confidence, rank)
 }
 
 /// Ranks the backends of one operation over several launches, as [`rank`] does in one launch. `launches` are
@@ -64,22 +70,19 @@ pub fn rank_launches(
     launches: &[&[Option<f64>]],
     times: &[Option<f64>],
     noise: f64,
+    confidence: Confidence,
 ) -> Vec<Option<Rank>> {
     let rank = |b: usize, best: usize| {
         let (ns, best_ns) = (times[b]?, times[best]?);
         let time = time_over_launches(ns, launches[b])?;
         if b == best {
-            return Some((time, Median::exactly(1.0), time.interval.is_some()));
+            return Some((time, Median::exactly(1.0), time.has_interval()));
         }
         let ratio = ratio_over_launches([ns, best_ns], [launches[b], launches[best]]);
-        let ratio = ratio.unwrap_or(Median {
-            value: ns / best_ns,
-            least: ns / best_ns,
-            interval: None,
-        });
-        Some((time, ratio, ratio.interval.is_some()))
+        let ratio = ratio.unwrap_or(Median::without_interval(ns / best_ns));
+        Some((time, ratio, ratio.has_interval()))
     };
-    ranks(times, noise, rank)
+    ranks(times, noise, confidence, rank)
 }
 
 /// Ranks backends. `rank` returns the time of a backend, its ratio to the best, and whether both have
@@ -87,6 +90,7 @@ pub fn rank_launches(
 fn ranks(
     times: &[Option<f64>],
     noise: f64,
+    confidence: Confidence,
     rank: impl Fn(usize, usize) -> Option<(Median, Median, bool)>,
 ) -> Vec<Option<Rank>> {
     let measured = (0..times.len()).filter_map(|b| Some((b, times[b]?)));
@@ -103,7 +107,7 @@ fn ranks(
             Some(Rank {
                 time,
                 ratio,
-                standing: standing(ratio, enough, noise),
+                standing: standing(ratio, enough, noise, confidence),
             })
         })
         .collect();
@@ -128,11 +132,12 @@ fn ranks(
 }
 
 /// Returns the standing of a backend whose time, divided by that of the fastest, is `ratio`.
-fn standing(ratio: Median, enough: bool, noise: f64) -> Option<Standing> {
+fn standing(ratio: Median, enough: bool, noise: f64, confidence: Confidence) -> Option<Standing> {
     if !enough {
         return (ratio.value >= CLEAR_DIFFERENCE).then_some(Standing::Slower);
     }
-    let [low, high] = ratio.interval.unwrap_or([0.0, f64::INFINITY]);
+    let interval = ratio.interval(confidence);
+    let [low, high] = interval.unwrap_or([0.0, f64::INFINITY]);
     Some(match () {
         () if noise <= EQUAL && EQUAL.recip() <= low && high <= EQUAL => Standing::Equal,
         () if low <= 1.0 || ratio.value <= noise => Standing::Undecided,
@@ -140,13 +145,13 @@ fn standing(ratio: Median, enough: bool, noise: f64) -> Option<Standing> {
     })
 }
 
-/// Returns the corrected time `ns` with the interval of its samples.
+/// Returns the corrected time `ns` with the error of its samples.
 pub fn time(samples: &[(u32, Time)], ns: f64) -> Option<Median> {
     let raw = Median::from_samples(samples.iter().map(|(_, time)| time.ns()))?;
     Some(raw.moved_to(ns))
 }
 
-/// Returns the quotient of two corrected times, with the interval of the ratios within rounds.
+/// Returns the quotient of two corrected times, with the error of the ratios within rounds.
 pub fn quotient([a, b]: [&[(u32, Time)]; 2], [ns, other_ns]: [f64; 2]) -> Option<Median> {
     let within_rounds = ratio(a, b)?;
     let quotient = ns / other_ns;
@@ -169,11 +174,7 @@ pub fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
         let median =
             |times: &[(u32, Time)]| Median::from_samples(times.iter().map(|(_, t)| t.ns()));
         let value = median(samples)?.value / median(best)?.value;
-        value.is_finite().then_some(Median {
-            value,
-            least: value,
-            interval: None,
-        })
+        value.is_finite().then_some(Median::without_interval(value))
     })
 }
 
@@ -193,7 +194,12 @@ mod tests {
     }
 
     fn ranked(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
-        rank(backends, &corrected_times(backends), noise)
+        rank(
+            backends,
+            &corrected_times(backends),
+            noise,
+            Confidence::default(),
+        )
     }
 
     fn standings(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Standing>> {
@@ -210,7 +216,7 @@ mod tests {
         assert_eq!(standings(&[slow.clone(), fast.clone(), vec![]]), expected);
         let ratio = ranked(&[fast, slow], NO_DIFFERENCE)[1];
         let ratio = ratio.expect("measured").ratio;
-        let [low, high] = ratio.interval.expect("seven rounds");
+        let [low, high] = ratio.interval(Confidence::default()).expect("seven rounds");
         assert!((ratio.value - 1.1).abs() < 1e-9 && low > 1.065 && high < 1.135);
     }
 
@@ -288,9 +294,25 @@ mod tests {
                 (rank.time.value / (2.0 * factor) - 1.0).abs() < 1e-9,
                 "{rank:?}"
             );
-            let [low, high] = rank.ratio.interval.expect("three rounds or more");
+            let [low, high] = rank
+                .ratio
+                .interval(Confidence::default())
+                .expect("three rounds or more");
             assert!(low <= rank.ratio.value && rank.ratio.value <= high);
         }
+    }
+
+    #[test]
+    fn a_higher_confidence_leaves_more_undecided() {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
+        let both = [samples(&drift), samples(&drift.map(|t| t * 1.04))];
+        let standing = |confidence: &str| {
+            let confidence = confidence.parse().expect("allowed");
+            let ranks = rank(&both, &corrected_times(&both), NO_DIFFERENCE, confidence);
+            ranks[1].and_then(|rank| rank.standing)
+        };
+        let expected = [Standing::Slower, Standing::Undecided].map(Some);
+        assert_eq!(["95%", "99.9%"].map(standing), expected);
     }
 
     #[test]
@@ -317,7 +339,8 @@ mod tests {
             .collect();
         let launches: Vec<&[Option<f64>]> = launches.iter().map(Vec::as_slice).collect();
         let times = times_over_launches(&launches);
-        let ranks = rank_launches(&launches, &times, NO_DIFFERENCE).into_iter();
+        let ranks =
+            rank_launches(&launches, &times, NO_DIFFERENCE, Confidence::default()).into_iter();
         ranks
             .map(|rank| rank.and_then(|rank| rank.standing))
             .collect()

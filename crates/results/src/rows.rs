@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 use sixfold_core::{Capabilities, Facts, TableBytes};
 
+use crate::confidence::Confidence;
 use crate::ranking::{NO_DIFFERENCE, has_enough};
 use crate::read::ReadError;
-use crate::statistics::{median, undisturbed};
+use crate::statistics::{Median, median, undisturbed};
 
 /// All samples (timed series of runs) of one operation on one backend. All lists except `first_ns`
 /// contain one value for each sample.
@@ -179,10 +180,10 @@ pub struct ResultRow {
     pub uncorrected_ns: Option<f64>,
     /// The smallest time of a sample.
     pub min_ns: Option<f64>,
-    /// The lower end of the 95 % confidence interval of `median_ns`; `None` with fewer than three
+    /// The lower end of the confidence interval of `median_ns`; `None` with fewer than three
     /// samples.
     pub ci_low_ns: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `median_ns`.
+    /// The upper end of the confidence interval of `median_ns`.
     pub ci_high_ns: Option<f64>,
     /// The number of elements that a whole run visits.
     pub elements: Option<u64>,
@@ -215,9 +216,9 @@ pub struct ResultRow {
     /// The time of this backend divided by the time of the fastest backend. The fastest backend has
     /// the ratio 1.
     pub ratio_to_best: Option<f64>,
-    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
+    /// The lower end of the confidence interval of `ratio_to_best`.
     pub ratio_ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
+    /// The upper end of the confidence interval of `ratio_to_best`.
     pub ratio_ci_high: Option<f64>,
     /// The time in each launch, if there are several: the corrected median of its samples. `None` in a launch
     /// without a time.
@@ -325,10 +326,10 @@ pub struct ControlRow {
     /// The time of the second measurement divided by the time of the first measurement, as the
     /// median over the rounds.
     pub ratio: f64,
-    /// The lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three
+    /// The lower end of the confidence interval of `ratio`; `None` with fewer than three
     /// rounds.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `ratio`.
+    /// The upper end of the confidence interval of `ratio`.
     pub ci_high: Option<f64>,
     /// The ratio in each launch, if there are several; `None` in a launch without both times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -336,8 +337,25 @@ pub struct ControlRow {
 }
 
 impl ControlRow {
-    /// Returns true if the times of the two measurements differ by more than 5 % and the 95 %
-    /// confidence interval of `ratio` does not contain 1.
+    /// Creates the row of an operation. `launches` has the ratio in each launch, if there are several.
+    pub fn new(
+        operation: &str,
+        ratio: Median,
+        confidence: Confidence,
+        launches: Vec<Option<f64>>,
+    ) -> Self {
+        let interval = ratio.interval(confidence);
+        Self {
+            operation: operation.to_owned(),
+            ratio: ratio.value,
+            ci_low: interval.map(|[low, _]| low),
+            ci_high: interval.map(|[_, high]| high),
+            launches,
+        }
+    }
+
+    /// Returns true if the times of the two measurements differ by more than 5 % and the confidence
+    /// interval of `ratio` does not contain 1.
     pub fn is_unsteady(&self) -> bool {
         let interval = self.ci_low.zip(self.ci_high);
         let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
@@ -406,10 +424,10 @@ pub enum Agreement {
 pub enum Standing {
     /// The fastest: all other backends are measurably slower.
     Best,
-    /// As fast as the fastest: the whole 95 % interval of the ratio lies within 5 % of 1. The fastest backend
+    /// As fast as the fastest: the whole interval of the ratio lies within 5 % of 1. The fastest backend
     /// is equal if another one is equal to it and none is undecided.
     Equal,
-    /// Not decided: the 95 % interval of the ratio to the fastest contains 1 and reaches beyond 5 %, or the ratio
+    /// Not decided: the interval of the ratio to the fastest contains 1 and reaches beyond 5 %, or the ratio
     /// is not above the noise. The fastest backend is undecided if another one is.
     #[serde(alias = "tied")]
     Undecided,

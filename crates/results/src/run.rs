@@ -5,6 +5,7 @@ use std::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
 
+use crate::confidence::Confidence;
 use crate::environment::{CacheState, Environment, Policy};
 use crate::merge::MergeError;
 use crate::numbers::counted;
@@ -67,6 +68,9 @@ pub struct RunSettings {
     /// The number of untimed runs before each sample, if it was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warm_up: Option<u32>,
+    /// The confidence of all intervals; in JSON, left out if it is 0.95.
+    #[serde(default, skip_serializing_if = "Confidence::is_default")]
+    pub confidence: Confidence,
     /// True if faces with more than three corners were cut into triangles before the measurement.
     pub triangulate: bool,
     /// True if files with degenerate faces were refused.
@@ -167,7 +171,7 @@ impl RunSettings {
             (Some(_), Some(_)) => "--rounds",
             _ => "--budget",
         };
-        let options = |settings: &Self| -> [(&'static str, String); 11] {
+        let options = |settings: &Self| -> [(&'static str, String); 12] {
             [
                 ("--backends", settings.backends.join(",")),
                 ("--external", settings.externals.join(",")),
@@ -180,6 +184,7 @@ impl RunSettings {
                     "--warmup",
                     settings.warm_up.map_or(String::new(), |n| n.to_string()),
                 ),
+                ("--confidence", settings.confidence.to_string()),
                 ("--triangulate", settings.triangulate.to_string()),
                 ("--strict", settings.strict.to_string()),
                 ("reading of mesh files", settings.reading.join(" ")),

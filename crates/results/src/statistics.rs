@@ -25,14 +25,14 @@ use std::f64::consts::SQRT_2;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use crate::confidence::Confidence;
+
 /// Number of batches. With fewer samples, each sample is a batch.
 const BATCHES: usize = 6;
 /// Minimum number of samples for an interval that is not wide because of their number.
 pub const MIN_SAMPLES: usize = BATCHES;
 /// Minimum number of samples for any interval.
 const FEWEST_SAMPLES: usize = 3;
-/// The 97.5 % quantile of the normal distribution.
-pub(crate) const NORMAL: f64 = 1.959_964;
 /// Standard deviation of the drift from study to study that the samples of one study do not show,
 /// relative to the time. Every confidence interval includes this drift.
 ///
@@ -54,20 +54,44 @@ pub const DISTURBED: f64 = 1.3;
 /// alike.
 const MIN_UNDISTURBED: f64 = 0.5;
 
-/// The median of samples and its 95 % confidence interval.
+/// The median of samples and its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Median {
     /// The median.
     pub value: f64,
     /// The smallest sample.
     pub least: f64,
-    /// The 95 % confidence interval of the median; `None` with fewer than three samples.
-    pub interval: Option<[f64; 2]>,
+    /// The error of the logarithm of the median; `None` with fewer than three samples.
+    pub(crate) error: Option<MeanError>,
+    /// The standard deviation of the unseen drift.
+    pub(crate) drift: f64,
+}
+
+/// The variance of values, or the error of their mean or median.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeanError {
+    /// The square of the standard deviation or error.
+    pub(crate) squared: f64,
+    /// The degrees of freedom of the estimate.
+    pub(crate) freedom: f64,
+}
+
+impl MeanError {
+    /// Returns half the width of the interval of the mean.
+    pub(crate) fn half_width(self, confidence: Confidence) -> f64 {
+        confidence.student(self.freedom) * self.squared.sqrt()
+    }
+
+    /// Returns half the width of the interval of the mean if the unseen drift has the standard deviation `drift`.
+    fn half_width_with(self, drift: f64, confidence: Confidence) -> f64 {
+        self.half_width(confidence)
+            .hypot(confidence.normal() * drift)
+    }
 }
 
 impl Median {
     /// Returns the median of `samples`, the times of one backend in the order of measurement;
-    /// `None` if `samples` is empty. The interval exists only if all samples are positive.
+    /// `None` if `samples` is empty. The interval exists only with three samples or more, and if all are positive.
     pub fn from_samples(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         Self::with_drift(samples, UNSEEN_DRIFT)
     }
@@ -77,61 +101,81 @@ impl Median {
         Self::with_drift(ratios, SQRT_2 * UNSEEN_DRIFT)
     }
 
-    /// Returns the median of the differences in `pairs` of times: the first minus the second time.
-    /// Each of the times has its own drift.
-    pub fn from_differences(pairs: &[[f64; 2]]) -> Option<Self> {
-        let time = |i: usize| Some(median_of_sorted(&sorted(pairs.iter().map(|pair| pair[i]))?));
-        let drift = UNSEEN_DRIFT * time(0)?.hypot(time(1)?);
-        let differences: Vec<f64> = pairs.iter().map(|[a, b]| a - b).collect();
-        let sorted = sorted(differences.iter().copied())?;
-        let value = median_of_sorted(&sorted);
-        let half_width = half_width(&differences, drift);
-        Some(Self {
-            value,
-            least: sorted[0],
-            interval: half_width.map(|half| [value - half, value + half]),
-        })
+    /// Returns a value whose interval has no width.
+    pub(crate) const fn exactly(value: f64) -> Self {
+        let error = MeanError {
+            squared: 0.0,
+            freedom: 1.0,
+        };
+        Self {
+            error: Some(error),
+            ..Self::without_interval(value)
+        }
     }
 
-    /// Returns a value without an error.
-    pub(crate) const fn exactly(value: f64) -> Self {
+    /// Returns a value whose error is not known.
+    pub(crate) const fn without_interval(value: f64) -> Self {
         Self {
             value,
             least: value,
-            interval: Some([value; 2]),
+            error: None,
+            drift: 0.0,
         }
+    }
+
+    /// Returns the confidence interval of the median; `None` if there are too few samples.
+    pub fn interval(&self, confidence: Confidence) -> Option<[f64; 2]> {
+        let half = self.error?.half_width_with(self.drift, confidence);
+        Some([-half, half].map(|log| self.value * log.exp()))
+    }
+
+    /// Returns whether there are enough samples for an interval.
+    pub(crate) fn has_interval(&self) -> bool {
+        self.error.is_some()
     }
 
     /// Returns this median with `value`, and with an interval of the same relative width. The least value is
     /// not above it, also if both differ only by rounding.
     pub fn moved_to(self, value: f64) -> Self {
-        let factor = value / self.value;
-        let interval = self.interval.map(|ends| ends.map(|end| end * factor));
         Self {
             value,
             least: self.least.min(value),
-            interval: interval.filter(|_| factor.is_finite()),
+            error: self.error.filter(|_| (value / self.value).is_finite()),
+            ..self
         }
     }
 
     fn with_drift(samples: impl IntoIterator<Item = f64>, drift: f64) -> Option<Self> {
         let samples: Vec<f64> = samples.into_iter().collect();
         let sorted = sorted(samples.iter().copied())?;
-        let value = median_of_sorted(&sorted);
         let logs: Vec<f64> = samples.iter().map(|sample| sample.ln()).collect();
-        let interval = half_width(&logs, drift).map(|half| [-half, half].map(f64::exp));
         Some(Self {
-            value,
+            value: median_of_sorted(&sorted),
             least: sorted[0],
-            interval: interval.map(|factors| factors.map(|factor| value * factor)),
+            error: error_of_batches(&logs),
+            drift,
         })
     }
 }
 
-/// Returns half the width of the 95 % interval of the median of `samples`, which are in the order
-/// of measurement. `drift` is the standard deviation of the unseen drift. Returns `None` with fewer
-/// than three samples, or if a sample is not finite. O(n log n).
-fn half_width(samples: &[f64], drift: f64) -> Option<f64> {
+/// Returns the median of the differences in `pairs` of times, the first minus the second time, and its interval. Each
+/// of the times has its own drift. Returns `None` if the list is empty. The interval needs three pairs.
+pub fn difference(pairs: &[[f64; 2]], confidence: Confidence) -> Option<(f64, Option<[f64; 2]>)> {
+    let time = |i: usize| median(pairs.iter().map(|pair| pair[i]).collect());
+    let drift = UNSEEN_DRIFT * time(0)?.hypot(time(1)?);
+    let differences: Vec<f64> = pairs.iter().map(|[a, b]| a - b).collect();
+    let error = error_of_batches(&differences);
+    let value = median(differences)?;
+    let interval = error.map(|error| {
+        let half = error.half_width_with(drift, confidence);
+        [value - half, value + half]
+    });
+    Some((value, interval))
+}
+
+/// Returns the error of the median of `samples`, which are in the order of measurement, without the unseen drift.
+/// Returns `None` with fewer than three samples, or if a sample is not finite. O(n log n).
+fn error_of_batches(samples: &[f64]) -> Option<MeanError> {
     let batches = samples.len().min(BATCHES);
     if batches < FEWEST_SAMPLES {
         return None;
@@ -148,9 +192,11 @@ fn half_width(samples: &[f64], drift: f64) -> Option<f64> {
     let count = batches as f64;
     let mean = medians.iter().sum::<f64>() / count;
     let squares: f64 = medians.iter().map(|median| (median - mean).powi(2)).sum();
-    let error = (squares / (count - 1.0) / count).sqrt();
-    let half_width = (student(count - 1.0) * error).hypot(NORMAL * drift);
-    half_width.is_finite().then_some(half_width)
+    let squared = squares / (count - 1.0) / count;
+    squared.is_finite().then_some(MeanError {
+        squared,
+        freedom: count - 1.0,
+    })
 }
 
 /// Moves samples that are far from the median nearer to it. The distance of a few very slow samples
@@ -198,11 +244,11 @@ fn median_of_sorted(sorted: &[f64]) -> f64 {
     f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
 }
 
-/// Returns the geometric mean and its 95 % interval. Returns `None` without values. The interval
+/// Returns the geometric mean and its interval. Returns `None` without values. The interval
 /// needs at least three values. The half-width is that of the mean of the logarithms, from Student's
 /// distribution: resampling three values gives intervals that contain the mean in only 76 % of the
 /// cases.
-pub fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
+pub fn geometric_mean(values: &[f64], confidence: Confidence) -> Option<(f64, Option<[f64; 2]>)> {
     let logs: Vec<f64> = values.iter().map(|value| value.ln()).collect();
     let count = logs.len();
     let mean = logs.iter().sum::<f64>() / count as f64;
@@ -212,16 +258,11 @@ pub fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let squares: f64 = logs.iter().map(|log| (log - mean).powi(2)).sum();
     let interval = (count >= FEWEST_SAMPLES).then(|| {
         let freedom = count as f64 - 1.0;
-        let half_width = student(freedom) * (squares / freedom / count as f64).sqrt();
+        let squared = squares / freedom / count as f64;
+        let half_width = MeanError { squared, freedom }.half_width(confidence);
         [mean - half_width, mean + half_width]
     });
     Some((mean.exp(), interval.map(|ends| ends.map(f64::exp))))
-}
-
-/// Returns the 97.5 % quantile of Student's distribution with `freedom` degrees of freedom; infinity for 0
-/// degrees.
-pub(crate) fn student(freedom: f64) -> f64 {
-    student_at(0.975, freedom)
 }
 
 /// Returns a quantile, from 0 to 1, of Student's distribution with `freedom` degrees of freedom; infinity for 0
@@ -231,17 +272,24 @@ pub(crate) fn student_at(quantile: f64, freedom: f64) -> f64 {
         .map_or(f64::INFINITY, |students| students.inverse_cdf(quantile))
 }
 
-/// Returns the ratio of the medians of two series without common rounds, and its 95 % interval: the
+/// Returns the ratio of the medians of two series without common rounds, and its interval: the
 /// half-widths of the two medians are added as independent parts. Returns `None` if a list is
 /// empty. The interval needs three samples in each list.
-pub fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
+pub fn quotient(
+    samples: &[f64],
+    others: &[f64],
+    confidence: Confidence,
+) -> Option<(f64, Option<[f64; 2]>)> {
     let [a, b] = [samples, others].map(|list| Median::from_samples(list.iter().copied()));
     let (a, b) = (a?, b?);
     let ratio = a.value / b.value;
     if !ratio.is_finite() {
         return None;
     }
-    let half_width = |median: Median| median.interval.map(|[low, high]| (high / low).ln() / 2.0);
+    let half_width = |median: Median| {
+        let interval = median.interval(confidence);
+        interval.map(|[low, high]| (high / low).ln() / 2.0)
+    };
     let half_widths = half_width(a).zip(half_width(b));
     let interval = half_widths.map(|(a, b)| {
         let half_width = a.hypot(b);

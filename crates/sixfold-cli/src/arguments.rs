@@ -28,7 +28,7 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use sixfold::shapes::{GENERATORS, Generator, Order, generator};
 use sixfold::{Relation, UnknownName};
-use sixfold_results::{CacheState, Policy};
+use sixfold_results::{CacheState, Confidence, Policy};
 use sixfold_study::{Effort, External, Settings};
 
 pub(crate) use comparing::{
@@ -347,12 +347,20 @@ pub(crate) struct EffortArgs {
     rounds: Option<NonZeroU32>,
 }
 
-// In how many processes to measure, and what it means if a part fails.
+// In how many processes to measure, how sure intervals are, and what it means if a part fails.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LaunchArgs {
     /// Measure in N fresh processes [default: by the budget and the work]
     #[arg(long, value_name = "N", value_parser = launch_count, allow_hyphen_values = true)]
     pub(crate) launches: Option<NonZeroU32>,
+    /// Confidence of all intervals, such as 99% or 0.99
+    #[arg(
+        long,
+        value_name = "LEVEL",
+        default_value = "95%",
+        allow_hyphen_values = true
+    )]
+    pub(crate) confidence: Confidence,
     /// Exit code 0 also if a part cannot be measured; a note names it
     #[arg(long)]
     pub(crate) keep_going: bool,

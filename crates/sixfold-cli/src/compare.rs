@@ -13,7 +13,9 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold_report::{Compared, PaperFile, ReportPage};
-use sixfold_results::{Change, Changes, Measurement, MeasurementPart, Verdict, compare};
+use sixfold_results::{
+    Change, Changes, Confidence, Measurement, MeasurementPart, Verdict, compare,
+};
 
 use crate::arguments::{ChangeArgs, Compare};
 use crate::failure::Failure;
@@ -168,7 +170,7 @@ pub(crate) fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
         false => changes.changed().collect(),
     };
     if !rows.is_empty() {
-        text.print_line(&changes_table(&rows));
+        text.print_line(&changes_table(&rows, changes.confidence));
         if rows.iter().any(|row| row.verdict == Verdict::CannotTell) {
             text.print_line("?: cannot be told from chance");
         }
@@ -204,8 +206,9 @@ fn name(measurement: &Measurement, parts: &[MeasurementPart]) -> String {
     }
 }
 
-fn changes_table(rows: &[&Change]) -> String {
-    let figures = ["before", "after", "ratio", "95 %"];
+fn changes_table(rows: &[&Change], confidence: Confidence) -> String {
+    let confidence = confidence.to_string();
+    let figures = ["before", "after", "ratio", &confidence];
     let lines = rows.iter().map(|row| {
         let figures = [
             duration(row.before_ns),

@@ -30,6 +30,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
             backends: arguments.backends.clone(),
             operations: arguments.operations.selected(),
             effort: arguments.effort.effort(),
+            confidence: arguments.launching.confidence,
             seed: launches::seed(arguments.seed),
             heap: arguments.memory.heap,
             caches: arguments.memory.caches,

@@ -194,7 +194,8 @@ fn rows(group: &HistoryGroup, all: bool) -> Vec<&HistoryRow> {
 }
 
 fn rows_table(group: &HistoryGroup, rows: &[&HistoryRow]) -> String {
-    let figures = ["first", "ratio", "95 %"];
+    let confidence = group.confidence.to_string();
+    let figures = ["first", "ratio", &confidence];
     let lines = rows.iter().filter_map(|row| {
         let (first, last) = (row.points.first()?, row.last()?);
         let figures = [

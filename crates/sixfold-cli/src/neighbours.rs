@@ -25,6 +25,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
         indices: arguments.indices.clone(),
         points: arguments.points,
         effort: arguments.effort.effort(),
+        confidence: arguments.launching.confidence,
         seed: launches::seed(arguments.seed),
         heap: Policy::Kept,
     };

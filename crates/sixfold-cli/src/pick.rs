@@ -48,6 +48,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         needs: arguments.needs.clone(),
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
+        confidence: arguments.launching.confidence,
         seed: launches::seed(arguments.seed),
         heap: arguments.heap,
     };
@@ -107,6 +108,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         runs: 1,
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
+        confidence: arguments.launching.confidence,
         seed: launches::seed(arguments.seed),
         heap: arguments.heap,
         isolation: None,
@@ -362,7 +364,10 @@ fn ranking(report: &PickReport) -> String {
         None => "operation: mean time of an operation of the mix",
         Some(_) => "run: time of a run of the program",
     });
-    signs.explain("ratio: to the time of the fastest, with its 95 % interval");
+    let confidence = report.run.settings.confidence;
+    signs.explain(&format!(
+        "ratio: to the time of the fastest, with its {confidence} interval"
+    ));
     signs.explain("1st build: time to build on new memory pages");
     signs.explain("rebuild: on pages that were used before");
     if !pays_at_once {

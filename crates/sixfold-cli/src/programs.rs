@@ -79,6 +79,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
         runs: arguments.runs,
         max_memory: arguments.max_memory,
         effort: arguments.effort.effort(),
+        confidence: arguments.launching.confidence,
         seed: launches::seed(arguments.seed),
         heap: arguments.heap,
     };

@@ -30,7 +30,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
     // Intervals fit into the table only if there are few columns.
     let intervals = columns.len() <= 4;
-    let mut signs = Signs::new(bold);
+    let confidence = report.run.settings.confidence;
+    let mut signs = Signs::new(bold).with_confidence(confidence);
     let table = stacked(&columns, |part| {
         table_of_backends(report, part, intervals, &mut signs)
     });
@@ -124,7 +125,7 @@ fn table_of_backends(
                 table.add_row(line);
             }
         };
-        below("ratio up to", UNSURE, &largest_ratio);
+        below("ratio up to", &unsure(report), &largest_ratio);
         if operation.group == OperationGroup::Build {
             below("first time", FIRST_TIME, &first_time(&rows));
         }
@@ -164,8 +165,15 @@ fn first_time(rows: &[&ResultRow]) -> impl Fn(&ResultRow) -> Option<f64> + use<>
     }
 }
 
-const UNSURE: &str = "ratio up to: upper end of the 95 % interval (of this run) of the ratio to the fastest, \
-                      for ? with a ratio above 1.1";
+/// Explains what [`largest_ratio`] returns.
+fn unsure(report: &Report) -> String {
+    format!(
+        "ratio up to: upper end of the {} interval (of this run) of the ratio to the fastest, for ? with a ratio \
+         above 1.1",
+        report.run.settings.confidence
+    )
+}
+
 /// An undecided backend with a larger ratio is shown with the end of its interval.
 const CLOSE: f64 = 1.1;
 

@@ -2,7 +2,7 @@
 
 use comfy_table::{Attribute, Cell, CellAlignment};
 use sixfold_results::numbers::{figure, rounded_down};
-use sixfold_results::{Agreement, ResultRow, Standing};
+use sixfold_results::{Agreement, Confidence, ResultRow, Standing};
 
 use crate::text::{hanging_indent, width};
 
@@ -12,6 +12,7 @@ pub(crate) struct Signs {
     /// Other parts of the legend.
     parts: Vec<String>,
     bold: bool,
+    confidence: Confidence,
 }
 
 impl Signs {
@@ -21,7 +22,13 @@ impl Signs {
             used: Vec::new(),
             parts: Vec::new(),
             bold,
+            confidence: Confidence::default(),
         }
+    }
+
+    /// Returns the legend for intervals of this confidence.
+    pub(crate) fn with_confidence(self, confidence: Confidence) -> Self {
+        Self { confidence, ..self }
     }
 
     /// Returns whether the figures of the best backend are bold.
@@ -90,6 +97,7 @@ impl Signs {
 
     /// Returns the lines of the legend. A line ends only between two signs.
     pub(crate) fn legend(&self) -> String {
+        let interval = format!("{} interval", self.confidence);
         let meanings = [
             ('*', "clearly fastest"),
             ('=', "equal: within 5 % of the fastest"),
@@ -97,7 +105,7 @@ impl Signs {
             ('~', "measured on a sample of the elements"),
             ('≥', "lower bound: not run, so not ranked"),
             ('–', "no time: see the notes"),
-            ('±', "95 % interval"),
+            ('±', &*interval),
             ('m', "the backend merges vertices at one position"),
             (
                 'e',

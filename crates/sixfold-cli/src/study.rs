@@ -30,6 +30,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         operations: arguments.operations.selected(),
         force: arguments.force,
         warm_up: arguments.warmup,
+        confidence: arguments.launching.confidence,
         effort: launches::effort(arguments.effort(1)),
         seed: launches::seed(arguments.seed),
         heap: arguments.memory.heap,

@@ -29,6 +29,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let timing = (!arguments.counts_only).then(|| Timing {
         effort: arguments.effort.effort(),
         seed: launches::seed(SEED),
+        confidence: arguments.launching.confidence,
     });
     if timing.is_some() {
         warn_of_debug_build();

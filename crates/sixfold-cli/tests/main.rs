@@ -3,6 +3,7 @@
 mod bad_input;
 mod changes;
 mod comparing;
+mod confidence;
 mod distance;
 mod explore;
 mod external;

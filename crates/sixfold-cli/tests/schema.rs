@@ -47,6 +47,8 @@ fn written_fields() -> BTreeSet<String> {
             "a=b",
             "--warmup",
             "3",
+            "--confidence",
+            "99%",
         ],
         &[
             "study",
@@ -57,6 +59,8 @@ fn written_fields() -> BTreeSet<String> {
             "2",
             "--warmup",
             "3",
+            "--confidence",
+            "99%",
         ],
         &["orders", "grid.obj", "--rounds", "2"],
         &["growth", "--to", "2000", "--steps", "3", "--rounds", "2"],

@@ -83,7 +83,8 @@ fn pool_studies(mut launches: Vec<Report>) -> Report {
         return launches.remove(0);
     }
     let rows: Vec<LaunchRows<'_>> = launches.iter().map(Report::launch_rows).collect();
-    let mut pooled = pool_rows(&rows, |row| row.operation.clone());
+    let confidence = launches[0].run.settings.confidence;
+    let mut pooled = pool_rows(&rows, confidence, |row| row.operation.clone());
     let backends = pool_backends(&launches);
     pooled.results.sort_by_key(|row| place(row, &backends));
     let first = &launches[0];

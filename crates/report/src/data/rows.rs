@@ -207,7 +207,7 @@ pub(crate) struct BreakEvenRow<'r> {
     /// The number of runs after which the time to build is saved. Missing if it is never saved, or if
     /// the structure of the input was not measured.
     pub(crate) pays_after_runs: Option<f64>,
-    /// The 95 % interval of `pays_after_runs`. The upper end is missing if the time may never be saved.
+    /// The interval of `pays_after_runs`. The upper end is missing if the time may never be saved.
     pub(crate) pays_after_low: Option<f64>,
     pub(crate) pays_after_high: Option<f64>,
 }

@@ -3,7 +3,7 @@
 
 use sixfold_results::launches::difference_over_launches;
 use sixfold_results::numbers::{approximate, counted, duration};
-use sixfold_results::{BreakEven, PickReport, Report, ResultRow};
+use sixfold_results::{BreakEven, Confidence, PickReport, Report, ResultRow};
 
 use super::INPUT_BACKEND;
 use crate::Picture;
@@ -46,6 +46,7 @@ impl<'s> Repeated<'s> {
                 build,
                 run,
                 interval: ends.map(|(low, high)| [part * low, part * high]),
+                confidence: study.run.settings.confidence,
                 launches: row.launch_ns.iter().map(|ns| Some(part * (*ns)?)).collect(),
                 pays: Pays::Unknown,
             }
@@ -205,6 +206,7 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
             .ns_ci_low
             .zip(ranked.ns_ci_high)
             .map(|(low, high)| [low, high]),
+        confidence: report.run.settings.confidence,
         launches: ranked.launch_ns.clone(),
         pays: pays(&ranked.backend),
     });
@@ -239,6 +241,8 @@ struct Line<'a> {
     run: f64,
     /// The interval of `run`.
     interval: Option<[f64; 2]>,
+    /// The confidence of `interval`.
+    confidence: Confidence,
     /// The time of a run in each launch.
     launches: Vec<Option<f64>>,
     pays: Pays,
@@ -258,7 +262,7 @@ enum Pays {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Crossing {
     at: f64,
-    /// The 95 % interval. The upper end is infinite if the lines may never cross.
+    /// The interval. The upper end is infinite if the lines may never cross.
     range: Option<[f64; 2]>,
 }
 
@@ -309,7 +313,7 @@ impl Line<'_> {
         };
         let in_launches = || {
             let launches = [&*self.launches, &*other.launches];
-            difference_over_launches([self.run, other.run], launches)?.interval
+            difference_over_launches([self.run, other.run], launches, self.confidence)?.1
         };
         let of_both = || {
             let half = |line: &Self| line.interval.map(|[low, high]| (high - low) / 2.0);
@@ -446,11 +450,11 @@ impl Curves<'_> {
              first build on fresh pages, where one was measured."
         )];
         let is_drawn = |line: &Line<'_>| line.point([1.0, self.max_count]).is_some();
-        if lines.iter().any(is_drawn) {
+        if let Some(line) = lines.iter().find(|line| is_drawn(line)) {
             parts.push(format!(
                 "Points and numbers show after how many {} building pays off: the line of the structure is then below that of \
-                 the {INPUT_BACKEND}. Ranges in brackets follow from the 95 % intervals of the repeated work.",
-                self.units
+                 the {INPUT_BACKEND}. Ranges in brackets follow from the {} intervals of the repeated work.",
+                self.units, line.confidence
             ));
         }
         parts.extend(self.least_total(lines));

@@ -82,7 +82,10 @@ fn caption(ranked: &Ranked<'_>, all: &[&Change], [before, after]: [Compared<'_>;
     )];
     let has_interval = |row: &&Change| ranked.interval(row).is_some();
     if shown.iter().any(has_interval) {
-        parts.push("Lines are 95 % intervals.".into());
+        parts.push(format!(
+            "Lines are {} intervals.",
+            ranked.changes.confidence
+        ));
     }
     if !shown.iter().all(has_interval) {
         parts.push("An open ring has too few samples for an interval.".into());

@@ -86,8 +86,9 @@ pub(crate) fn figure(group: &HistoryGroup, id: &str, command: &str) -> Option<Fi
         title,
         caption: format!(
             "Each dot is the time in a document divided by that in the first one, on a logarithmic axis; the numbers of \
-             the documents are those of the table of documents. Upright lines are 95 % intervals. The number at each name is \
-             the last ratio. Operations with the largest changes beyond chance come first.{more}{left_out}"
+             the documents are those of the table of documents. Upright lines are {} intervals. The number at each name is \
+             the last ratio. Operations with the largest changes beyond chance come first.{more}{left_out}",
+            group.confidence
         ),
         table: table(group),
         csv: into_text(csv),

@@ -44,7 +44,8 @@ struct Point {
 pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Option<Figure> {
     let names: Vec<&str> = report.orders.iter().map(String::as_str).collect();
     let header = ["", "structure"].into_iter().chain(names.iter().copied());
-    let mut table = Table::new(header.chain(["worst / best", "95 %"]));
+    let confidence = report.run.settings.confidence.to_string();
+    let mut table = Table::new(header.chain(["worst / best", &confidence]));
     let comparisons = report.comparisons.iter();
     let all: Vec<(&Comparison, Vec<Line<'_>>)> = comparisons
         .map(|comparison| (comparison, lines(report, comparison)))

@@ -2,7 +2,7 @@
 //! to the fastest. All panels have one scale.
 
 use sixfold_results::numbers::{duration, grouped, shown_ratio, times};
-use sixfold_results::{NeighboursReport, PickReport, SpatialTask, Standing};
+use sixfold_results::{Confidence, NeighboursReport, PickReport, SpatialTask, Standing};
 
 use super::per_unit;
 use crate::Picture;
@@ -43,6 +43,7 @@ pub(super) fn from_matrix(matrix: &Matrix, note: &str, command: &str) -> Option<
         "rankings".into(),
         &panels.collect::<Vec<_>>(),
         note,
+        matrix.confidence,
         command,
     )
 }
@@ -77,7 +78,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         cells: with_shown_ratios(cells.collect()),
     };
     let title = format!("Ranking for {name}");
-    let figure = figure(title, id.into(), &[panel], "", command)?;
+    let confidence = report.run.settings.confidence;
+    let figure = figure(title, id.into(), &[panel], "", confidence, command)?;
     Some(figure.with_csv(rows::pick(report)))
 }
 
@@ -112,7 +114,8 @@ pub(super) fn from_neighbours(
     });
     let panels: Vec<Panel<'_>> = panels.collect();
     let title = "Rankings of all tasks".into();
-    let figure = figure(title, id.into(), &panels, "", command)?;
+    let confidence = report.run.settings.confidence;
+    let figure = figure(title, id.into(), &panels, "", confidence, command)?;
     Some(figure.with_csv(rows::neighbours(report)))
 }
 
@@ -141,13 +144,15 @@ fn figure(
     id: String,
     panels: &[Panel<'_>],
     note: &str,
+    confidence: Confidence,
     command: &str,
 ) -> Option<Figure> {
+    let interval = confidence.to_string();
     let mut table = Table::new([
         "",
         "structure",
         "× the fastest",
-        "95 %",
+        &*interval,
         "time",
         "per",
         "remark",
@@ -177,7 +182,7 @@ fn figure(
     }
     let columns = scenes.len().min(3);
     let cells: Vec<&Cell> = panels.iter().flat_map(|panel| &panel.cells).collect();
-    let caption = caption(&cells, note);
+    let caption = caption(&cells, note, confidence);
     Some(Figure {
         id,
         picture: Picture::grid(&title, columns, scenes),
@@ -207,7 +212,7 @@ fn reach<'c>(mut cells: impl Iterator<Item = &'c Cell>) -> f64 {
 }
 
 /// Explains the marks that the figure has.
-fn caption(cells: &[&Cell], note: &str) -> String {
+fn caption(cells: &[&Cell], note: &str, confidence: Confidence) -> String {
     let reach = reach(cells.iter().copied());
     let beyond = cells.iter().any(|cell| cell.ratio > Some(reach));
     let has = |test: fn(&Cell) -> bool| cells.iter().any(|cell| cell.ratio.is_some() && test(cell));
@@ -228,7 +233,7 @@ fn caption(cells: &[&Cell], note: &str) -> String {
             beyond && !means,
             format!("A bar with a gap is longer than {}.", times(reach)),
         ),
-        (has(|cell| cell.interval.is_some()), "Thin lines are 95 % intervals.".into()),
+        (has(|cell| cell.interval.is_some()), format!("Thin lines are {confidence} intervals.")),
         (has(|cell| cell.is_best() || cell.shares_first()), "The fastest, and those that share the first place, are bold.".into()),
         (
             has(|cell| cell.standing == Some(Standing::Equal)),

@@ -101,7 +101,10 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
             table.operations {
                 caption {
                     span {
-                        span.reading { "Time divided by that of the fastest, with its 95 % interval where there are enough samples." }
+                        span.reading {
+                            "Time divided by that of the fastest, with its " (matrix.confidence)
+                            " interval where there are enough samples."
+                        }
                         " A longer bar is slower, on a logarithmic scale that ends at 10 times the shortest; bars with a gap are longer."
                         @if has(Source::Bound) {
                             " ≥ with an empty bar: a lower bound, because a run would exceed the budget."

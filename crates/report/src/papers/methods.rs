@@ -419,10 +419,15 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
         false => "A time is the median of the samples.".to_owned(),
     }];
     let has_interval = |row: &TimeRow<'_>| row.row.ci_low_ns.is_some();
+    let confidence = by_command(results, |finding| {
+        let confidence = finding.run().settings.confidence;
+        (finding.figures().iter().any(is_timed)).then(|| confidence.to_string())
+    });
+    let confidence = confidence.unwrap_or_default();
     if several {
         sentences.push(
             format!(
-                "Intervals of results with several launches are 95 % confidence intervals of the mean of the logarithms over the \
+                "Intervals of results with several launches are {confidence} confidence intervals of the mean of the logarithms over the \
                  launches, by Student's distribution; a ratio is formed within each launch (Kalibera and Jones 2013, 2020), and \
                  its mean leaves out the largest and the smallest fifth (Tukey and McLaughlin 1963). The variance of a mean is \
                  {ALIKE} times that of independent launches. For what differs from study to study, the intervals of ratios also \
@@ -431,16 +436,15 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
         );
     }
     if one && is_corrected(rows) && rows.iter().any(has_interval) {
-        sentences.push(
-            "Intervals of results with one launch are 95 % confidence intervals from batch means with six batches (Schmeiser 1982) by Student's \
+        sentences.push(format!(
+            "Intervals of results with one launch are {confidence} confidence intervals from batch means with six batches (Schmeiser 1982) by Student's \
              distribution, widened for a drift from study to study with a standard deviation of 1 % (Kalibera and \
              Jones 2013)."
-                .into(),
-        );
+        ));
     }
     if rows.iter().any(|row| row.row.standing.is_some()) {
         sentences.push(format!(
-            "A backend is equal to the fastest if the whole 95 % interval of its ratio lies within 5 % of 1. It is undecided \
+            "A backend is equal to the fastest if the whole {confidence} interval of its ratio lies within 5 % of 1. It is undecided \
              whether it is slower if the interval contains 1 and is wider, or if the ratio is at most the noise (the \
              difference between the two measurements of the control, and at least 2 %). A backend with a time in only one of \
              several launches, or with fewer than {FEWEST_OF_A_WINNER} samples of the only launch, is not ranked."

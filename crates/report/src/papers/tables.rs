@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use sixfold_results::numbers::{counted, figure as shown, rounded_down};
-use sixfold_results::{OperationInfo, Pool, Pooled, Report, ResultRow, Results};
+use sixfold_results::numbers::{counted, figure as shown, list, rounded_down};
+use sixfold_results::{Confidence, OperationInfo, Pool, Pooled, Report, ResultRow, Results};
 
 use crate::figures::facts;
 use crate::markdown::escape;
@@ -33,7 +33,7 @@ pub(super) struct RatioRow {
 #[derive(Clone, Debug)]
 pub(super) struct Cell {
     pub(super) ratio: String,
-    /// The ends of the 95 % interval.
+    /// The ends of the interval.
     pub(super) interval: Option<[String; 2]>,
     /// Whether the ratio is a lower bound.
     pub(super) bound: bool,
@@ -64,15 +64,14 @@ impl Cell {
     }
 }
 
-/// What all captions state.
-const READING: &str = "Times relative to the fastest backend of the row, with 95 % intervals in brackets. Bold: the fastest \
-                       backend, and backends that are equal to it or undecided. ≥: lower bound, because a run would exceed the budget. \
-                       –: not measured.";
-
-/// What the caption of a table of means states.
-const READING_MEANS: &str = "Geometric means over the meshes of the time relative to the fastest backend of the mesh, with 95 % \
-                             intervals in brackets. Bold: the smallest mean. ≥: lower bound, because a run on a mesh would \
-                             exceed the budget. –: not measured.";
+/// Returns what the captions of a mesh and of workloads state. `confidence` is that of the intervals.
+fn reading(confidence: &str) -> String {
+    format!(
+        "Times relative to the fastest backend of the row, with {confidence} intervals in brackets. Bold: the fastest \
+         backend, and backends that are equal to it or undecided. ≥: lower bound, because a run would exceed the budget. \
+         –: not measured."
+    )
+}
 
 /// Returns the tables of the studies, and of the rankings for workloads. Several studies have a table of
 /// means; if there are at most [`MAX_MESH_TABLES`] studies, each also has its own table.
@@ -80,7 +79,7 @@ pub(super) fn tables(results: &Results) -> Vec<RatioTable> {
     let studies: Vec<&Report> = results.studies().collect();
     let mut tables = Vec::new();
     if studies.len() > 1 {
-        tables.push(means(&results.pool()));
+        tables.push(means(&results.pool(), studies[0].run.settings.confidence));
     }
     if studies.len() <= MAX_MESH_TABLES {
         let numbered = studies.iter().enumerate();
@@ -103,7 +102,12 @@ fn of_study(study: &Report, number: usize) -> RatioTable {
     };
     RatioTable {
         label: format!("mesh-{number}"),
-        caption: format!("{}: {} {READING}", study.mesh.name, facts(&study.mesh)),
+        caption: format!(
+            "{}: {} {}",
+            study.mesh.name,
+            facts(&study.mesh),
+            reading(&study.run.settings.confidence.to_string())
+        ),
         rows: with_cells(study.run.operations.iter().map(row)),
         columns,
     }
@@ -126,7 +130,7 @@ fn cell(study: &Report, row: &ResultRow) -> Option<Cell> {
     (bound > best).then(|| Cell::bound(bound / best))
 }
 
-fn means(pool: &Pool) -> RatioTable {
+fn means(pool: &Pool, confidence: Confidence) -> RatioTable {
     let columns = pool.compared.clone();
     let row = |rows: &[Pooled]| {
         let measured = rows.iter().filter(|row| row.estimated == 0);
@@ -150,7 +154,9 @@ fn means(pool: &Pool) -> RatioTable {
     RatioTable {
         label: "means".into(),
         caption: format!(
-            "Means over {}. {READING_MEANS}",
+            "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh, with \
+             {confidence} intervals in brackets. Bold: the smallest mean. ≥: lower bound, because a run on a mesh would \
+             exceed the budget. –: not measured.",
             counted(meshes, "mesh", "meshes")
         ),
         rows: with_cells(
@@ -189,9 +195,16 @@ fn of_workloads(results: &Results) -> RatioTable {
             cells: columns.iter().map(cell).collect(),
         }
     });
+    let mut confidences: Vec<String> = Vec::new();
+    for pick in results.picks() {
+        let confidence = pick.run.settings.confidence.to_string();
+        if !confidences.contains(&confidence) {
+            confidences.push(confidence);
+        }
+    }
     RatioTable {
         label: "workloads".into(),
-        caption: format!("Workloads. {READING}"),
+        caption: format!("Workloads. {}", reading(&list(confidences))),
         rows: with_cells(rows),
         columns: columns.clone(),
     }

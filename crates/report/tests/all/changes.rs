@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use sixfold::shapes;
 use sixfold_report::{Compared, Figure, ReportPage};
 use sixfold_results::{
-    BytesChange, Change, Changes, Failed, FailureKind, Finding, Measurement, NewWinner, Results,
-    SCHEMA, SettingChange, Verdict,
+    BytesChange, Change, Changes, Confidence, Failed, FailureKind, Finding, Measurement, NewWinner,
+    Results, SCHEMA, SettingChange, Verdict,
 };
 use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 
@@ -65,6 +65,7 @@ fn changes(rows: Vec<Change>) -> Changes {
         overall: (!rows.is_empty()).then_some(1.0),
         relative: false,
         noise: NOISE,
+        confidence: Confidence::default(),
         rows,
         bytes: Vec::new(),
         winners: Vec::new(),

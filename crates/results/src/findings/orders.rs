@@ -85,15 +85,15 @@ impl LabFinding for OrdersReport {
     }
 }
 
-/// The time of one measurement divided by the time of another measurement, with a 95 % confidence
+/// The time of one measurement divided by the time of another measurement, with a confidence
 /// interval.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Factor {
     /// The quotient of the two times.
     pub ratio: f64,
-    /// Lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three rounds.
+    /// Lower end of the confidence interval of `ratio`; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % confidence interval of `ratio`.
+    /// Upper end of the confidence interval of `ratio`.
     pub ci_high: Option<f64>,
 }
 

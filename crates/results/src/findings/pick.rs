@@ -44,7 +44,7 @@ pub struct PickReport {
     pub ranking: Vec<Ranked>,
     /// The backend to use; `None` if no backend meets all requirements and was measured.
     pub choice: Option<Choice>,
-    /// True if some times have too few samples for a 95 % confidence interval, because the time
+    /// True if some times have too few samples for a confidence interval, because the time
     /// budget was too small.
     pub preliminary: bool,
     /// The backends that do not meet all requirements, each with the reason.
@@ -208,17 +208,17 @@ pub struct Ranked {
     /// The time in each launch, if there are several; `None` in a launch without a time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub launch_ns: Vec<Option<f64>>,
-    /// The lower end of the 95 % confidence interval of `ns_per_operation`; `None` with fewer than
+    /// The lower end of the confidence interval of `ns_per_operation`; `None` with fewer than
     /// two launches, or three rounds of the only launch.
     pub ns_ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `ns_per_operation`.
+    /// The upper end of the confidence interval of `ns_per_operation`.
     pub ns_ci_high: Option<f64>,
     /// The time of this backend divided by the time of the fastest backend, as the median over the
     /// rounds. The fastest backend has the ratio 1.
     pub ratio_to_best: f64,
-    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
+    /// The lower end of the confidence interval of `ratio_to_best`.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
+    /// The upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
     /// True if the backend is not measurably slower than the fastest backend.
     pub tied_with_best: bool,
@@ -245,6 +245,10 @@ pub struct Ranked {
     pub parts: Vec<PartCost>,
     /// The number of rounds in which the workload was timed on this backend.
     pub samples: usize,
+    /// True if the time is that of a single run with cold caches, because there was no time for a round. In JSON, left out
+    /// if it is false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub warm_up_only: bool,
     /// The largest number of page faults in a sample; `None` if page faults were not counted.
     pub faults: Option<u64>,
     /// The names of the packages that a program needs as dependencies to use this backend.
@@ -331,9 +335,9 @@ pub struct BreakEven {
     /// The number of operations after which the building time is saved; `None` if the building time
     /// is never saved.
     pub operations: Option<f64>,
-    /// The lower end of the 95 % confidence interval of `operations`.
+    /// The lower end of the confidence interval of `operations`.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `operations`; `None` if the building time
+    /// The upper end of the confidence interval of `operations`; `None` if the building time
     /// may never be saved.
     pub ci_high: Option<f64>,
     /// The number of uses of a mesh after which the building time is saved: `operations` divided by
@@ -488,6 +492,7 @@ impl PickReport {
             ratio_ci_high: ranked.ci_high,
             faults: ranked.faults,
             samples: ranked.samples,
+            warm_up_only: ranked.warm_up_only,
             ..row(
                 self.whole(),
                 unit,

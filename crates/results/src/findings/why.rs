@@ -88,10 +88,10 @@ pub struct Timed {
     /// With several launches, `ns_per_element` in each of them; `None` in a launch without a time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub launch_ns: Vec<Option<f64>>,
-    /// Lower end of the 95 % interval of `ns_per_element`; `None` with fewer than two launches and three rounds.
+    /// Lower end of the interval of `ns_per_element`; `None` with fewer than two launches and three rounds.
     #[serde(default)]
     pub ci_low_ns: Option<f64>,
-    /// Upper end of the 95 % interval of `ns_per_element`.
+    /// Upper end of the interval of `ns_per_element`.
     #[serde(default)]
     pub ci_high_ns: Option<f64>,
     /// True if only a sample of the elements was timed.

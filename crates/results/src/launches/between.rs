@@ -12,8 +12,9 @@
 
 use std::array::from_fn;
 
-use super::{LASTING_IN_TIMES, MeanError, trimmed, trimmed_mean, variance};
-use crate::statistics::{median, median_and_deviation, student_at};
+use super::{LASTING_IN_TIMES, trimmed, trimmed_mean, variance};
+use crate::confidence::Confidence;
+use crate::statistics::{MeanError, median, median_and_deviation, student_at};
 
 /// Minimum number of rows from which the common speed of a launch is estimated.
 const FEWEST_ROWS: usize = 6;
@@ -52,7 +53,7 @@ pub struct StudyChanges {
 /// The change of one time between two studies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StudyChange {
-    /// The 95 % interval of the ratio of the two times.
+    /// The interval of the ratio of the two times.
     pub interval: [f64; 2],
     /// The logarithm of the ratio of the times, relative to the common ratio if there is one.
     log: f64,
@@ -84,10 +85,15 @@ impl StudyChange {
 }
 
 /// Returns the changes of all rows between two studies. The errors of both studies are added (Welch 1947).
-/// `other_machine` tells that the machines differ, so that the common ratio makes no row less sure.
+/// `other_machine` tells that the machines differ, so that the common ratio makes no row less sure. `confidence` is
+/// that of the intervals, and decides nothing.
 ///
 /// O(rows · launches · log launches).
-pub fn study_changes(rows: &[LaunchPair<'_>], other_machine: bool) -> StudyChanges {
+pub fn study_changes(
+    rows: &[LaunchPair<'_>],
+    other_machine: bool,
+    confidence: Confidence,
+) -> StudyChanges {
     let speeds: [Vec<f64>; 2] = from_fn(|study| speeds(rows, study));
     let means: [Vec<Option<LogMean>>; 2] = from_fn(|study| {
         let relative = rows
@@ -117,7 +123,7 @@ pub fn study_changes(rows: &[LaunchPair<'_>], other_machine: bool) -> StudyChang
         let [before, after] = [0, 1].map(|study| LogMean::new(row, study, None));
         let whole = Change::between(before?, after?, LASTING_IN_TIMES);
         let log = (row.ns[1] / row.ns[0]).ln();
-        let half_width = student_at(0.975, whole.error.freedom) * whole.error.squared.sqrt();
+        let half_width = whole.error.half_width(confidence);
         let (log_of_change, error, unsure) = match (common, relative) {
             (Some(common), Some(relative)) => {
                 let unsure = UNEVEN * common.abs();

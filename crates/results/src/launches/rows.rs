@@ -1,6 +1,7 @@
 //! Pools the rows of several launches: what each launch measured becomes one value of a row.
 
 use super::{FEWEST_LAUNCHES, ratio_over_launches, time_over_launches, times_over_launches};
+use crate::confidence::Confidence;
 use crate::ranking::{Rank, rank_launches};
 use crate::rows::{
     Agreement, Control, ControlRow, Refusal, RefusalKind, ResultRow, Samples, noise,
@@ -50,10 +51,11 @@ impl LaunchRows<'_> {
 /// O(launches · rows²) for the rows of one group.
 pub fn pool_rows<K: PartialEq>(
     launches: &[LaunchRows<'_>],
+    confidence: Confidence,
     group: impl Fn(&ResultRow) -> K,
 ) -> PooledRows {
     let counts: Vec<usize> = launches.iter().map(LaunchRows::launches).collect();
-    let control = pool_controls(launches, &counts);
+    let control = pool_controls(launches, &counts, confidence);
     let mut groups: Vec<(K, Vec<Vec<Option<&ResultRow>>>)> = Vec::new();
     for (launch, rows) in launches.iter().enumerate() {
         for row in rows.results {
@@ -79,7 +81,7 @@ pub fn pool_rows<K: PartialEq>(
     }
     let pooled = groups
         .iter()
-        .flat_map(|(_, rows)| pool_group(rows, &counts, control.as_ref()));
+        .flat_map(|(_, rows)| pool_group(rows, &counts, control.as_ref(), confidence));
     let results: Vec<ResultRow> = pooled.collect();
     PooledRows {
         refusals: pool_refusals(launches, &results),
@@ -98,6 +100,7 @@ fn pool_group(
     rows: &[Vec<Option<&ResultRow>>],
     counts: &[usize],
     control: Option<&Control>,
+    confidence: Confidence,
 ) -> Vec<ResultRow> {
     let values: Vec<Vec<Option<f64>>> = rows
         .iter()
@@ -127,7 +130,7 @@ fn pool_group(
     let compared: Vec<Option<f64>> = compared.collect();
     let operation = rows.iter().flatten().flatten().next();
     let noise = operation.map_or(1.0, |row| noise(control, &row.operation));
-    let ranks = rank_launches(&values, &compared, noise);
+    let ranks = rank_launches(&values, &compared, noise, confidence);
     let parts = rows
         .iter()
         .zip(values)
@@ -138,7 +141,7 @@ fn pool_group(
         let rows: Vec<&ResultRow> = rows.iter().copied().flatten().collect();
         Some(ResultRow {
             agreement,
-            ..pool_row(&rows, values, ns, rank)?
+            ..pool_row(&rows, values, ns, rank, confidence)?
         })
     });
     pooled.collect()
@@ -172,6 +175,7 @@ fn pool_row(
     values: &[Option<f64>],
     ns: Option<f64>,
     rank: Option<Rank>,
+    confidence: Confidence,
 ) -> Option<ResultRow> {
     // The plan of a launch may differ from that of another one.
     let timed = rows.iter().filter(|row| row.median_ns.is_some());
@@ -187,8 +191,8 @@ fn pool_row(
     let most = |of: &dyn Fn(&ResultRow) -> Option<u64>| rows.iter().filter_map(|row| of(row)).max();
     let sum = |of: &dyn Fn(&ResultRow) -> usize| rows.iter().map(|row| of(row)).sum::<usize>();
     let time = ns.and_then(|ns| time_over_launches(ns, values));
-    let interval = time.and_then(|time| time.interval);
-    let ratio = rank.and_then(|rank| rank.ratio.interval);
+    let interval = time.and_then(|time| time.interval(confidence));
+    let ratio = rank.and_then(|rank| rank.ratio.interval(confidence));
     let elements = rows.iter().find_map(|row| row.elements);
     let estimates = rows.iter().filter_map(|row| row.estimated_ns);
     let first_ratio = typical(&ResultRow::first_ratio);
@@ -305,7 +309,11 @@ fn append(known: &mut Samples, more: Samples) {
     both(&mut known.faults, more.faults);
 }
 
-fn pool_controls(launches: &[LaunchRows<'_>], counts: &[usize]) -> Option<Control> {
+fn pool_controls(
+    launches: &[LaunchRows<'_>],
+    counts: &[usize],
+    confidence: Confidence,
+) -> Option<Control> {
     let controls = || launches.iter().filter_map(|rows| rows.control);
     let backend = &controls().next()?.backend;
     let mut operations: Vec<ControlRow> = Vec::new();
@@ -332,13 +340,8 @@ fn pool_controls(launches: &[LaunchRows<'_>], counts: &[usize]) -> Option<Contro
         let ones = vec![Some(1.0); ratios.len()];
         let ratio = times_over_launches(&[&ratios])[0]
             .and_then(|ratio| ratio_over_launches([ratio, 1.0], [&ratios, &ones]));
-        operations.extend(ratio.map(|ratio| ControlRow {
-            operation: row.operation.clone(),
-            ratio: ratio.value,
-            ci_low: ratio.interval.map(|[low, _]| low),
-            ci_high: ratio.interval.map(|[_, high]| high),
-            launches: ratios,
-        }));
+        operations
+            .extend(ratio.map(|ratio| ControlRow::new(&row.operation, ratio, confidence, ratios)));
     }
     Control::new(backend, operations)
 }

@@ -23,7 +23,9 @@ fn a_time_is_the_geometric_mean_over_the_launches() {
     let launches = [Some(1.0), Some(4.0), Some(16.0)];
     assert!(matches!(times_over_launches(&[&launches])[..], [Some(ns)] if close(ns, 4.0)));
     let time = time_over_launches(4.0, &launches).expect("launches");
-    let [low, high] = time.interval.expect("three launches");
+    let [low, high] = time
+        .interval(Confidence::default())
+        .expect("three launches");
     // The standard deviation of the logarithms is ln 4, and the quantile of two degrees of freedom is 4.303.
     let half = 4.302_653 * 4_f64.ln() * (ALIKE / 3.0 + LASTING_IN_TIMES).sqrt();
     assert!((high / (4.0 * half.exp()) - 1.0).abs() < 1e-3, "{high}");
@@ -41,7 +43,9 @@ fn a_backend_gains_nothing_by_its_absence_from_a_slow_launch() {
     assert!(close(a, 20.0) && close(b, 60.0), "{times:?}");
     let ratio = ratio_over_launches([b, a], [&second, &first]).expect("two common launches");
     assert!(close(ratio.value, 3.0));
-    let [low, high] = ratio.interval.expect("two common launches");
+    let [low, high] = ratio
+        .interval(Confidence::default())
+        .expect("two common launches");
     assert!(
         close(low, 3.0) && close(high, 3.0),
         "no variation of the ratio"
@@ -51,12 +55,13 @@ fn a_backend_gains_nothing_by_its_absence_from_a_slow_launch() {
 #[test]
 fn a_single_launch_has_no_interval() {
     let one = [Some(5.0)];
-    assert_eq!(
-        time_over_launches(5.0, &one).expect("a time").interval,
-        None
-    );
+    let time = time_over_launches(5.0, &one).expect("a time");
+    assert_eq!(time.interval(Confidence::default()), None);
     let ratio = ratio_over_launches([5.0, 4.0], [&one, &[Some(4.0)]]).expect("a ratio");
-    assert_eq!((ratio.value, ratio.interval), (1.25, None));
+    assert_eq!(
+        (ratio.value, ratio.interval(Confidence::default())),
+        (1.25, None)
+    );
     assert_eq!(ratio_over_launches([5.0, 4.0], [&one, &[None]]), None);
     assert_eq!(time_over_launches(5.0, &[None]), None);
 }
@@ -68,7 +73,7 @@ fn without_logarithms_times_are_means() {
     let ratio = ratio_over_launches([2.0, 0.0], [&[Some(2.0)], &[Some(0.0)]]);
     assert_eq!(ratio, None, "the ratio is not finite");
     let time = time_over_launches(2.0, &[Some(0.0), Some(4.0)]).expect("a time");
-    assert_eq!(time.interval, None);
+    assert_eq!(time.interval(Confidence::default()), None);
 }
 
 #[test]
@@ -80,7 +85,9 @@ fn one_disturbed_launch_does_not_decide() {
     };
     assert!((b / a - 2.0).abs() < 0.01, "{a} {b}");
     let ratio = ratio_over_launches([b, a], [&disturbed, &steady]).expect("a ratio");
-    let [low, high] = ratio.interval.expect("five launches");
+    let [low, high] = ratio
+        .interval(Confidence::default())
+        .expect("five launches");
     assert!(1.9 < low && high < 2.1, "{low} {high}");
     // The time of a single backend is the geometric mean.
     let alone = times_over_launches(&[&disturbed])[0].expect("a time");
@@ -141,7 +148,7 @@ fn study(launches: usize, stalls: bool, random: &mut ChaCha8Rng) -> [Vec<Option<
 }
 
 /// Returns the part of 1,000 studies, in percent, whose intervals of the ratio and of the time contain the truth.
-fn covered(launches: usize, stalls: bool) -> [f64; 2] {
+fn covered(launches: usize, stalls: bool, confidence: Confidence) -> [f64; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(67);
     let mut covered = [0; 2];
     for _ in 0..STUDIES {
@@ -152,7 +159,7 @@ fn covered(launches: usize, stalls: bool) -> [f64; 2] {
         let ratio = ratio_over_launches([other, ns], [b, a]).expect("a ratio");
         let time = time_over_launches(ns, a).expect("a time");
         let contains = |found: Median, truth: f64| {
-            let [low, high] = found.interval.expect("two launches or more");
+            let [low, high] = found.interval(confidence).expect("two launches or more");
             usize::from((low..=high).contains(&truth))
         };
         covered[0] += contains(ratio, TRUE_RATIO);
@@ -166,7 +173,7 @@ fn covered(launches: usize, stalls: bool) -> [f64; 2] {
 #[test]
 fn intervals_of_ratios_contain_the_truth_in_95_percent_of_the_studies() {
     for launches in [2, 3, 5, 10, 20] {
-        let [ratios, _] = covered(launches, true);
+        let [ratios, _] = covered(launches, true, Confidence::default());
         assert!(
             (93.0..=97.0).contains(&ratios),
             "{launches} launches: {ratios} %"
@@ -175,9 +182,18 @@ fn intervals_of_ratios_contain_the_truth_in_95_percent_of_the_studies() {
 }
 
 #[test]
+fn intervals_of_another_confidence_contain_the_truth_as_often_as_they_say() {
+    for (confidence, allowed) in [("80%", 77.0..=83.0), ("99%", 97.5..=100.0)] {
+        let confidence = confidence.parse().expect("allowed");
+        let [ratios, _] = covered(10, true, confidence);
+        assert!(allowed.contains(&ratios), "{confidence}: {ratios} %");
+    }
+}
+
+#[test]
 fn intervals_of_times_contain_the_truth_and_have_room_for_the_drift_that_no_launch_sees() {
     for launches in [2, 3, 5, 10, 20] {
-        let [_, times] = covered(launches, false);
+        let [_, times] = covered(launches, false, Confidence::default());
         assert!(times >= 93.0, "{launches} launches: {times} %");
     }
 }
@@ -197,7 +213,9 @@ fn the_interval_of_one_launch_is_too_narrow() {
         });
         let [a, b] = samples;
         let ratio = Median::from_ratios(b.zip(a).map(|(b, a)| b / a)).expect("samples");
-        let [low, high] = ratio.interval.expect("enough samples");
+        let [low, high] = ratio
+            .interval(Confidence::default())
+            .expect("enough samples");
         covered += usize::from((low..=high).contains(&TRUE_RATIO));
     }
     assert!(covered < STUDIES * 9 / 10, "{covered} of {STUDIES}");

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
 
 use super::{Overall, Pooled, common, decade, leaders, not_ranked};
+use crate::confidence::Confidence;
 use crate::findings::study::Report;
 use crate::numbers::shown_ratio;
 use crate::operation::{OperationInfo, Purpose};
@@ -18,7 +19,7 @@ struct Known {
     each: f64,
     /// Whether the time is an estimate: a lower bound.
     bound: bool,
-    /// The half-width of the 95 % interval of the logarithm of the ratio to the fastest backend; `None` without
+    /// The half-width of the interval of the logarithm of the ratio to the fastest backend; `None` without
     /// an interval.
     log_error: Option<f64>,
 }
@@ -72,7 +73,7 @@ impl<'s> Rows<'s> {
 /// Pools each operation over the meshes on which all its backends have a time.
 pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
     let mut pooled = Vec::new();
-    let all_rows = Rows::new(studies);
+    let (all_rows, confidence) = (Rows::new(studies), confidence(studies));
     for OperationInfo {
         name: operation, ..
     } in operations(studies)
@@ -115,7 +116,7 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
                     .filter(|standing| wanted.contains(standing))
                     .count()
             };
-            let Some((ratio_to_best, interval)) = mean_over_sizes(&ratios) else {
+            let Some((ratio_to_best, interval)) = mean_over_sizes(&ratios, confidence) else {
                 continue;
             };
             let half_widths =
@@ -134,7 +135,7 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
                 ratio_to_best,
                 ci_low: interval.map(|[low, _]| low),
                 ci_high: interval.map(|[_, high]| high),
-                ns_per_element: mean_over_sizes(&each).map(|(mean, _)| mean),
+                ns_per_element: mean_over_sizes(&each, confidence).map(|(mean, _)| mean),
             });
         }
     }
@@ -227,7 +228,7 @@ fn count_mesh(rows: &mut [Overall], own: &[Overall], decided: bool) {
 fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose, usize)>) {
     let mut overall = Vec::new();
     let mut parts = Vec::new();
-    let all_rows = Rows::new(studies);
+    let (all_rows, confidence) = (Rows::new(studies), confidence(studies));
     for purpose in Purpose::ALL {
         let tasks = tasks(studies, purpose);
         // A case is a task on a mesh.
@@ -283,11 +284,14 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                         let own = shared.iter().filter(|&&case| cases[case].0 == mesh);
                         let ratios: Vec<f64> =
                             own.filter_map(|&case| ratio(case, backend)).collect();
-                        Some((decade(studies[mesh]), geometric_mean(&ratios)?.0))
+                        Some((
+                            decade(studies[mesh]),
+                            geometric_mean(&ratios, confidence)?.0,
+                        ))
                     })
                     .collect();
                 let bound = is_bound(backend);
-                mean_over_sizes(&by_mesh).map(|(mean, interval)| {
+                mean_over_sizes(&by_mesh, confidence).map(|(mean, interval)| {
                     let interval = interval.filter(|_| !bound);
                     let within = [Some(log_error(backend))].into_iter();
                     let interval = with_errors(interval, mean, within);
@@ -321,20 +325,29 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
     (overall, parts)
 }
 
+/// Returns the confidence of intervals over `studies`. Documents are merged only if all studies have the same.
+pub(crate) fn confidence(studies: &[&Report]) -> Confidence {
+    let first = studies.first();
+    first.map_or_else(Confidence::default, |first| first.run.settings.confidence)
+}
+
 /// Returns the geometric mean in which each power of ten has equal weight, and the interval of the
 /// mean over all values, moved to this mean.
-pub(crate) fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
+pub(crate) fn mean_over_sizes(
+    values: &[(u32, f64)],
+    confidence: Confidence,
+) -> Option<(f64, Option<[f64; 2]>)> {
     let mut by_size: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for &(size, value) in values {
         by_size.entry(size).or_default().push(value);
     }
     let means: Vec<f64> = by_size
         .values()
-        .filter_map(|values| Some(geometric_mean(values)?.0))
+        .filter_map(|values| Some(geometric_mean(values, confidence)?.0))
         .collect();
-    let (mean, _) = geometric_mean(&means)?;
+    let (mean, _) = geometric_mean(&means, confidence)?;
     let all: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
-    let (centre, interval) = geometric_mean(&all)?;
+    let (centre, interval) = geometric_mean(&all, confidence)?;
     let interval = interval.map(|ends| ends.map(|end| end * mean / centre));
     Some((mean, interval))
 }

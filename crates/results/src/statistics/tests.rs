@@ -46,7 +46,9 @@ fn intervals_contain_the_truth_on_machines_that_drift() {
         let (studies, truth) = studies(machine);
         let interval = |samples: &Vec<f64>| {
             let median = Median::from_samples(samples.iter().copied()).expect("samples");
-            median.interval.expect("enough samples")
+            median
+                .interval(Confidence::default())
+                .expect("enough samples")
         };
         let intervals: Vec<[f64; 2]> = studies.iter().map(interval).collect();
         let (covered, width) = coverage(&intervals, truth);
@@ -101,22 +103,34 @@ fn pairs(machine: Machine, gap: f64) -> Vec<[Vec<(u32, Time)>; 2]> {
     (0..STUDIES).map(study).collect()
 }
 
+fn ranked(pair: &[Vec<(u32, Time)>]) -> Vec<Option<Rank>> {
+    rank(
+        pair,
+        &corrected_times(pair),
+        NO_DIFFERENCE,
+        Confidence::default(),
+    )
+}
+
 #[test]
 fn differences_of_a_tenth_are_found_and_equal_backends_are_tied() {
     for machine in MACHINES {
         let (mut found, mut ordered, mut covered, mut tied) = (0, 0, 0, 0);
         for pair in pairs(machine, 1.1) {
-            let [first, second] = rank(&pair, &corrected_times(&pair), NO_DIFFERENCE)[..] else {
+            let [first, second] = ranked(&pair)[..] else {
                 panic!("two backends");
             };
             let (first, second) = (first.expect("samples"), second.expect("samples"));
             found += usize::from(second.standing == Some(Standing::Slower));
             ordered += usize::from(first.ratio.value == 1.0 && second.ratio.value > 1.0);
-            let [low, high] = second.ratio.interval.expect("enough rounds");
+            let [low, high] = second
+                .ratio
+                .interval(Confidence::default())
+                .expect("enough rounds");
             covered += usize::from(low <= 1.1 && 1.1 <= high);
         }
         for pair in pairs(machine, 1.0) {
-            let ranks = rank(&pair, &corrected_times(&pair), NO_DIFFERENCE);
+            let ranks = ranked(&pair);
             let slower = |rank: &Rank| rank.standing == Some(Standing::Slower);
             tied += usize::from(!ranks.iter().flatten().any(slower));
         }
@@ -140,7 +154,8 @@ fn quotients_of_separate_studies_contain_the_truth() {
     for machine in MACHINES {
         let (studies, _) = studies(machine);
         let interval = |pair: &[Vec<f64>]| {
-            let (ratio, interval) = quotient(&pair[0], &pair[1]).expect("samples");
+            let (ratio, interval) =
+                quotient(&pair[0], &pair[1], Confidence::default()).expect("samples");
             let [low, high] = interval.expect("enough samples");
             assert!(low <= ratio && ratio <= high);
             [low, high]
@@ -149,9 +164,12 @@ fn quotients_of_separate_studies_contain_the_truth() {
         let (covered, _) = coverage(&intervals, 1.0);
         assert!(covered >= 90.0, "{machine:?}: {covered} %");
     }
-    assert_eq!(quotient(&[], &[1.0]), None);
-    assert_eq!(quotient(&[4.0, 4.0], &[2.0]), Some((2.0, None)));
-    assert_eq!(quotient(&[1.0; 5], &[0.0; 5]), None);
+    assert_eq!(quotient(&[], &[1.0], Confidence::default()), None);
+    assert_eq!(
+        quotient(&[4.0, 4.0], &[2.0], Confidence::default()),
+        Some((2.0, None))
+    );
+    assert_eq!(quotient(&[1.0; 5], &[0.0; 5], Confidence::default()), None);
 }
 
 #[test]
@@ -164,9 +182,8 @@ fn differences_contain_the_truth() {
                 .zip(&b)
                 .map(|(a, b)| [b.1.ns(), a.1.ns()])
                 .collect();
-            let [low, high] = Median::from_differences(&pairs)
-                .and_then(|median| median.interval)
-                .expect("enough rounds");
+            let (_, interval) = difference(&pairs, Confidence::default()).expect("rounds");
+            let [low, high] = interval.expect("enough rounds");
             covered += usize::from(low <= 10.0 && 10.0 <= high);
         }
         let covered = percent(covered, STUDIES);
@@ -178,15 +195,16 @@ fn differences_contain_the_truth() {
 fn few_samples_have_wide_intervals_or_none() {
     assert_eq!(Median::from_samples([]), None);
     let two = Median::from_samples([4.0, 2.0]).expect("two samples");
-    assert_eq!((two.value, two.least, two.interval), (3.0, 2.0, None));
-    assert_eq!(Median::from_differences(&[]), None);
+    assert_eq!((two.value, two.least), (3.0, 2.0));
+    assert_eq!(two.interval(Confidence::default()), None);
+    assert_eq!(difference(&[], Confidence::default()), None);
     let (studies, truth) = studies(STEADY);
     let mut widths = Vec::new();
     for count in [3, 4, 5, 6] {
         let interval = |samples: &Vec<f64>| {
             let few = samples[..count].iter().copied();
             Median::from_samples(few)
-                .and_then(|median| median.interval)
+                .and_then(|median| median.interval(Confidence::default()))
                 .expect("enough")
         };
         let intervals: Vec<[f64; 2]> = studies.iter().map(interval).collect();
@@ -203,52 +221,77 @@ fn an_interval_has_the_half_width_of_batch_means_and_of_the_unseen_drift() {
     let logs = [0.0, 1.0].repeat(3);
     let samples = logs.iter().flat_map(|log: &f64| [log.exp(), log.exp()]);
     let median = Median::from_samples(samples.clone()).expect("samples");
-    let [low, high] = median.interval.expect("12 samples");
+    let [low, high] = median.interval(Confidence::default()).expect("12 samples");
     // The standard error is √(6 · 0.25 / 5 / 6).
     let expected = (2.570_582 * 0.05_f64.sqrt()).hypot(1.959_964 * 0.01);
     assert!(((high / median.value).ln() - expected).abs() < 1e-6);
     assert!(((low / median.value).ln() + expected).abs() < 1e-6);
     let ratios = Median::from_ratios(samples)
-        .and_then(|m| m.interval)
+        .and_then(|m| m.interval(Confidence::default()))
         .expect("12 samples");
     let expected = (2.570_582 * 0.05_f64.sqrt()).hypot(1.959_964 * 0.02_f64.sqrt() / 10.0);
     assert!(((ratios[1] / median.value).ln() - expected).abs() < 1e-6);
 }
 
 #[test]
+fn intervals_grow_with_their_confidence() {
+    let samples: Vec<f64> = (0..12).map(|i| 10.0 + f64::from(i % 5)).collect();
+    let median = Median::from_samples(samples.iter().copied()).expect("samples");
+    let pairs: Vec<[f64; 2]> = samples.iter().map(|ns| [2.0 * ns, *ns]).collect();
+    let widths = |confidence: &str| {
+        let confidence = confidence.parse().expect("allowed");
+        let of_median = median.interval(confidence);
+        let of_others = [
+            difference(&pairs, confidence),
+            quotient(&samples, &samples[..6], confidence),
+            geometric_mean(&samples, confidence),
+        ];
+        let others = of_others.map(|found| found.and_then(|(_, interval)| interval));
+        let all = [of_median, others[0], others[1], others[2]];
+        all.map(|interval| {
+            interval
+                .map(|[low, high]| high - low)
+                .expect("enough samples")
+        })
+    };
+    let widths = ["50%", "80%", "95%", "99%", "99.9%"].map(widths);
+    let is_wider = |a: &[f64; 4], b: &[f64; 4]| a.iter().zip(b).all(|(a, b)| a < b);
+    assert!(widths.is_sorted_by(is_wider), "{widths:?}");
+}
+
+#[test]
 fn intervals_do_not_depend_on_the_unit_and_ignore_the_distance_of_outliers() {
     let samples: Vec<f64> = (0..12).map(|i| 10.0 + f64::from(i % 5)).collect();
     let of = |samples: &[f64]| Median::from_samples(samples.iter().copied()).expect("samples");
-    let [low, high] = of(&samples).interval.expect("12 samples");
+    let [low, high] = of(&samples)
+        .interval(Confidence::default())
+        .expect("12 samples");
     let scaled: Vec<f64> = samples.iter().map(|ns| 1e9 * ns).collect();
-    let [scaled_low, scaled_high] = of(&scaled).interval.expect("12 samples");
+    let [scaled_low, scaled_high] = of(&scaled)
+        .interval(Confidence::default())
+        .expect("12 samples");
     assert!((scaled_low / low / 1e9 - 1.0).abs() < 1e-9);
     assert!((scaled_high / high / 1e9 - 1.0).abs() < 1e-9);
     let with_outlier = |ns: f64| {
         let mut samples = samples.clone();
         samples[4] = ns;
-        of(&samples).interval.expect("12 samples")
+        of(&samples)
+            .interval(Confidence::default())
+            .expect("12 samples")
     };
     assert_eq!(with_outlier(1e3), with_outlier(1e6));
     assert_eq!(
         of(&[5.0; 4])
-            .interval
+            .interval(Confidence::default())
             .map(|[low, high]| low < 5.0 && 5.0 < high),
         Some(true)
     );
     // A coarse clock may measure zero, and a ratio to zero is not finite.
-    assert_eq!(of(&[0.0, 1.0, 2.0]).interval, None);
-    assert_eq!(of(&[f64::INFINITY, 1.0, 2.0]).interval, None);
-}
-
-#[test]
-fn quantiles_of_student_are_those_of_a_table() {
-    let known = [(1.0, 12.7062), (2.0, 4.3027), (5.0, 2.5706), (20.0, 2.0860)];
-    for (freedom, quantile) in known {
-        let error = student(freedom) / quantile - 1.0;
-        assert!(error.abs() < 1e-4, "{freedom}: {}", student(freedom));
-    }
-    assert_eq!(student(0.0), f64::INFINITY);
+    assert_eq!(of(&[0.0, 1.0, 2.0]).interval(Confidence::default()), None);
+    assert_eq!(
+        of(&[f64::INFINITY, 1.0, 2.0]).interval(Confidence::default()),
+        None
+    );
 }
 
 /// The intervals of means over few meshes contain the mean of all meshes in 95 % of the cases if the
@@ -265,7 +308,7 @@ fn intervals_of_geometric_means_contain_the_mean_of_all_meshes() {
             let intervals: Vec<[f64; 2]> = (0..studies)
                 .filter_map(|_| {
                     let values: Vec<f64> = (0..count).map(|_| value(&mut random)).collect();
-                    geometric_mean(&values)?.1
+                    geometric_mean(&values, Confidence::default())?.1
                 })
                 .collect();
             assert_eq!(intervals.len(), studies);
@@ -276,7 +319,10 @@ fn intervals_of_geometric_means_contain_the_mean_of_all_meshes() {
         let covered = means(&mut |random| exponential(random), (-euler).exp());
         assert!(covered > 90.0, "{count} skewed: {covered} %");
     }
-    assert_eq!(geometric_mean(&[2.0, 8.0]), Some((4.0, None)));
+    assert_eq!(
+        geometric_mean(&[2.0, 8.0], Confidence::default()),
+        Some((4.0, None))
+    );
 }
 
 #[test]

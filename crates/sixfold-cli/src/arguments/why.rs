@@ -55,7 +55,7 @@ pub(crate) struct Why {
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Count the reads only, and measure no times
-    #[arg(long, conflicts_with_all = ["budget", "rounds", "launches"])]
+    #[arg(long, conflicts_with_all = ["budget", "rounds", "launches", "confidence"])]
     pub(crate) counts_only: bool,
     #[command(flatten)]
     pub(crate) effort: EffortArgs,

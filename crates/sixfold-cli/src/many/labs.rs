@@ -144,6 +144,7 @@ impl LabRunner<'_> {
             backends,
             operations,
             effort,
+            confidence,
             seed,
             heap,
             caches,
@@ -153,6 +154,7 @@ impl LabRunner<'_> {
             backends: backends.clone(),
             operations: operations.clone(),
             effort: *effort,
+            confidence: *confidence,
             seed: *seed,
             heap: *heap,
             caches: *caches,
@@ -182,11 +184,15 @@ impl LabRunner<'_> {
                     Operation::Relation(relation) => Some(*relation),
                     _ => None,
                 });
-                let seed = *seed;
+                let timing = Timing {
+                    effort,
+                    seed: *seed,
+                    confidence: *confidence,
+                };
                 let settings = WhySettings {
                     backends: backends.clone(),
                     relations: relations.collect(),
-                    timing: Some(Timing { effort, seed }),
+                    timing: Some(timing),
                     ..WhySettings::default()
                 };
                 if settings.relations.is_empty() && !operations.is_empty() {

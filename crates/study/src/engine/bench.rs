@@ -11,7 +11,9 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use sixfold::{PolygonMesh, QueryCost};
 use sixfold_core::Counts;
-use sixfold_results::{Agreement, Control, Refusal, ResultRow, Run, RunSettings, Samples};
+use sixfold_results::{
+    Agreement, Confidence, Control, Refusal, ResultRow, Run, RunSettings, Samples,
+};
 use sixfold_results::{Timer, corrected_times, noise};
 use sixfold_workload::pages::HeapPolicyConflict;
 use sixfold_workload::{Clock, Operation, TimedBackend};
@@ -65,6 +67,11 @@ impl<'m> Bench<'m> {
         self.machine.clock()
     }
 
+    /// Returns the confidence of the intervals.
+    pub(crate) fn confidence(&self) -> Confidence {
+        self.run.settings.confidence
+    }
+
     /// Returns whether the measurement has to end.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
@@ -101,7 +108,7 @@ impl<'m> Bench<'m> {
             untimed,
             seed,
         } = trial;
-        let (stop, clock) = (self.stop, self.clock());
+        let (stop, clock, confidence) = (self.stop, self.clock(), self.confidence());
         let mut measurement = Measurement {
             machine: self.machine,
             memory: &mut self.memory,
@@ -120,7 +127,8 @@ impl<'m> Bench<'m> {
         let entries = measurement.measure(entries);
         let interrupted = self.stopped();
         let control = columns.control.and_then(|[first, second]| {
-            control(&entries, first, second, columns.subjects[first].name())
+            let name = columns.subjects[first].name();
+            control(&entries, first, second, name, confidence)
         });
         let second = columns.control.map(|[_, second]| second);
         let (second, entries): (Vec<Entry>, Vec<Entry>) =
@@ -134,6 +142,7 @@ impl<'m> Bench<'m> {
             entries,
             second,
             control,
+            confidence,
             interrupted,
         }
     }
@@ -217,6 +226,7 @@ pub(crate) struct TrialResult<'s> {
     pub(crate) agreements: Vec<Agreement>,
     /// The differences between the two copies; `None` without a control.
     pub(crate) control: Option<Control>,
+    confidence: Confidence,
     /// Whether the measurement was stopped early.
     pub(crate) interrupted: bool,
 }
@@ -243,6 +253,7 @@ impl TrialResult<'_> {
                 times: &self.times[range.clone()],
                 agreements: &self.agreements[range],
                 noise: noise(self.control.as_ref(), entries[0].name),
+                confidence: self.confidence,
                 expected: expected.map(|o| o.estimated_elements(self.polygons) as u64),
             };
             rows.extend(group.rows(&self.columns.subjects));

@@ -3,7 +3,7 @@
 use crate::engine::measure::Entry;
 use sixfold_results::ranking::ratio;
 use sixfold_results::statistics::Median;
-use sixfold_results::{Control, ControlRow};
+use sixfold_results::{Confidence, Control, ControlRow};
 
 /// Compares the two columns of `backend`: the subjects `first` and `second`.
 pub(crate) fn control(
@@ -11,6 +11,7 @@ pub(crate) fn control(
     first: usize,
     second: usize,
     backend: &str,
+    confidence: Confidence,
 ) -> Option<Control> {
     let mut operations = Vec::new();
     for again in entries.iter().filter(|e| e.subject == second) {
@@ -22,13 +23,7 @@ pub(crate) fn control(
         let ratio = ratio(&again.times(), &once.times());
         let known = |ratio: &Median| ratio.value.is_finite() && ratio.value > 0.0;
         if let Some(ratio) = ratio.filter(known) {
-            operations.push(ControlRow {
-                operation: again.name.into(),
-                ratio: ratio.value,
-                ci_low: ratio.interval.map(|[low, _]| low),
-                ci_high: ratio.interval.map(|[_, high]| high),
-                launches: Vec::new(),
-            });
+            operations.push(ControlRow::new(again.name, ratio, confidence, Vec::new()));
         }
     }
     Control::new(backend, operations)

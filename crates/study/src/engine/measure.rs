@@ -209,6 +209,11 @@ impl Entry {
         self.estimate.is_some() || !self.times().is_empty()
     }
 
+    /// Returns whether the only time is that of the warm-up run.
+    pub(crate) fn is_warm_up_only(&self) -> bool {
+        self.samples.is_empty() && self.warm_up.is_some()
+    }
+
     /// Returns the samples that count. If there are no samples, returns the warm-up run.
     pub(crate) fn times(&self) -> Vec<(u32, Time)> {
         match (&self.samples[..], self.warm_up) {

@@ -1,6 +1,6 @@
 //! Makes the rows of a finding from the measured entries, for all labs.
 
-use sixfold_results::{Agreement, ResultRow, Time};
+use sixfold_results::{Agreement, Confidence, ResultRow, Time};
 use sixfold_workload::TimedBackend;
 
 use crate::engine::measure::Entry;
@@ -15,6 +15,8 @@ pub(crate) struct Group<'g> {
     pub(crate) agreements: &'g [Agreement],
     /// Ratios up to this value are not differences.
     pub(crate) noise: f64,
+    /// The confidence of the intervals.
+    pub(crate) confidence: Confidence,
     /// The number of elements of a whole run, if no run was measured.
     pub(crate) expected: Option<u64>,
 }
@@ -31,7 +33,8 @@ impl Group<'_> {
         let compared = compared.map(|(agreement, &ns)| {
             ns.filter(|_| !matches!(agreement, Agreement::Mismatch | Agreement::OtherEdits))
         });
-        let ranks = rank(&samples, &compared.collect::<Vec<_>>(), self.noise);
+        let (compared, confidence) = (compared.collect::<Vec<_>>(), self.confidence);
+        let ranks = rank(&samples, &compared, self.noise, confidence);
         // The largest count comes from a whole run, if any backend made a whole run.
         let counted = self
             .entries
@@ -52,8 +55,8 @@ impl Group<'_> {
             let elements = elements.map(|outcome| outcome.elements);
             let elements = elements.or(entry.estimate.and(self.expected));
             let per_element = |ns: f64| Some(ns / elements.filter(|&n| n > 0)? as f64);
-            let interval = time.and_then(|time| time.interval);
-            let ratio = rank.and_then(|rank| rank.ratio.interval);
+            let interval = time.and_then(|time| time.interval(confidence));
+            let ratio = rank.and_then(|rank| rank.ratio.interval(confidence));
             Some(ResultRow {
                 case: entry.case.into(),
                 backend: subjects[entry.subject].name().into(),
@@ -83,7 +86,7 @@ impl Group<'_> {
                 launch_ns: Vec::new(),
                 samples: samples.len(),
                 runs_per_sample: entry.runs,
-                warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
+                warm_up_only: entry.is_warm_up_only(),
                 by_name_only: entry.by_name_only,
                 faults: most_faults(entry.samples.iter().map(|(_, time)| time)),
                 retaken: entry.retaken,

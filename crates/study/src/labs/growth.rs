@@ -193,7 +193,8 @@ pub(crate) fn pool_growth(mut launches: Vec<GrowthReport>) -> GrowthReport {
             .iter()
             .filter_map(|launch| launch.sizes.iter().find(same));
         let rows: Vec<LaunchRows<'_>> = of_each.map(SizeReport::launch_rows).collect();
-        let pooled = pool_rows(&rows, |row| row.operation.clone());
+        let confidence = farthest.run.settings.confidence;
+        let pooled = pool_rows(&rows, confidence, |row| row.operation.clone());
         SizeReport {
             results: pooled.results,
             refusals: pooled.refusals,

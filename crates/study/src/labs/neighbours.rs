@@ -15,8 +15,8 @@ use sixfold::spatial::SpatialError;
 use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::ranking::NO_DIFFERENCE;
 use sixfold_results::{
-    CheapestIndices, IndexReport, NeighboursReport, Policy, QueryPoints, ResultRow, RunSettings,
-    SpatialTask, noise,
+    CheapestIndices, Confidence, IndexReport, NeighboursReport, Policy, QueryPoints, ResultRow,
+    RunSettings, SpatialTask, noise,
 };
 use sixfold_workload::spatial::{IndexKind, Input, KINDS, LIST};
 use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
@@ -46,6 +46,8 @@ pub struct NeighboursSettings {
     pub points: QueryPoints,
     /// How much is measured.
     pub effort: Effort,
+    /// The confidence of all intervals.
+    pub confidence: Confidence,
     /// Seed of the random numbers for the query points and the order of the measurements.
     pub seed: u64,
     /// What happens to freed memory pages.
@@ -58,6 +60,7 @@ impl Default for NeighboursSettings {
             indices: Vec::new(),
             points: QueryPoints::Near,
             effort: Effort::Budget(Duration::from_secs(10)),
+            confidence: Confidence::default(),
             seed: 1,
             heap: Policy::Kept,
         }
@@ -145,6 +148,7 @@ pub(crate) fn neighbours_on(
     let needed: usize = backends.iter().map(|index| index.bytes).sum();
     let run_settings = RunSettings {
         backends: settings.indices.clone(),
+        confidence: settings.confidence,
         seed: settings.seed,
         heap: settings.heap,
         ..settings.effort.run_settings()
@@ -199,7 +203,8 @@ pub(crate) fn pool_neighbours(mut launches: Vec<NeighboursReport>) -> Neighbours
         return launches.remove(0);
     }
     let rows: Vec<LaunchRows<'_>> = launches.iter().map(NeighboursReport::launch_rows).collect();
-    let pooled = pool_rows(&rows, |row| row.operation.clone());
+    let confidence = launches[0].run.settings.confidence;
+    let pooled = pool_rows(&rows, confidence, |row| row.operation.clone());
     let run = pool_runs(launches.iter().map(|launch| &launch.run));
     let timers = launches.iter().map(|launch| launch.timer);
     let noises = launches.iter().filter_map(|launch| launch.noise);

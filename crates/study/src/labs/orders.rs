@@ -161,7 +161,8 @@ pub(crate) fn orders_on(
             ns,
         });
         let timed: Vec<OrderTime<'_>> = timed.collect();
-        comparison(operation, &timed, noise(control, operation.name()))
+        let noise = noise(control, operation.name());
+        comparison(operation, &timed, noise, settings.confidence)
     };
     let comparisons: Vec<Comparison> = operations.into_iter().map(timed).collect();
     let timer = bench.timer(measured.shortest_ns());
@@ -202,7 +203,10 @@ pub(crate) fn pool_orders(mut launches: Vec<OrdersReport>) -> OrdersReport {
     }
     let rows: Vec<LaunchRows<'_>> = launches.iter().map(OrdersReport::launch_rows).collect();
     // A row is compared with the other orders of its structure.
-    let pooled = pool_rows(&rows, |row| (row.operation.clone(), row.backend.clone()));
+    let confidence = launches[0].run.settings.confidence;
+    let pooled = pool_rows(&rows, confidence, |row| {
+        (row.operation.clone(), row.backend.clone())
+    });
     let structures = Backend::structures();
     let compared = |operation: Operation| {
         let of_it = pooled
@@ -222,11 +226,8 @@ pub(crate) fn pool_orders(mut launches: Vec<OrdersReport>) -> OrdersReport {
         let mut timed: Vec<OrderTime<'_>> = timed.collect();
         // Those of one structure are adjacent.
         timed.sort_by_key(|time| structures.iter().position(|s| s.name() == time.backend));
-        comparison(
-            operation,
-            &timed,
-            noise(pooled.control.as_ref(), operation.name()),
-        )
+        let noise = noise(pooled.control.as_ref(), operation.name());
+        comparison(operation, &timed, noise, confidence)
     };
     let known = launches[0].comparisons.iter();
     let operations = known.filter_map(|known| known.operation.parse().ok());

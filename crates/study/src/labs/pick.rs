@@ -24,7 +24,7 @@ mod tests;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_results::{Excluded, Need, PickReport, Policy, RunSettings};
+use sixfold_results::{Confidence, Excluded, Need, PickReport, Policy, RunSettings};
 use sixfold_workload::{
     Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
     prepare_mix, tabulate,
@@ -62,6 +62,8 @@ pub struct PickSettings {
     pub max_memory: Option<u64>,
     /// How much is measured. A time limit is for all meshes together.
     pub effort: Effort,
+    /// The confidence of all intervals.
+    pub confidence: Confidence,
     /// Seed of the random numbers that choose the elements and the order of the measurements.
     pub seed: u64,
     /// What happens to freed memory pages during the measurement.
@@ -81,6 +83,7 @@ impl PickSettings {
     fn run_settings(&self) -> RunSettings {
         RunSettings {
             backends: self.backends.clone(),
+            confidence: self.confidence,
             seed: self.seed,
             heap: self.heap,
             ..self.effort.run_settings()

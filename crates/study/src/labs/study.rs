@@ -17,8 +17,8 @@ use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
 use sixfold_results::{
-    BackendRefusal, BackendReport, CacheState, Policy, Report, ResultRow, RunSettings, Samples,
-    sanitize,
+    BackendRefusal, BackendReport, CacheState, Confidence, Policy, Report, ResultRow, RunSettings,
+    Samples, sanitize,
 };
 
 use crate::engine::warnings::warnings;
@@ -54,6 +54,8 @@ pub struct Settings {
     pub force: bool,
     /// The number of untimed runs before each sample. `None` if the study chooses it, so that they fill the caches.
     pub warm_up: Option<u32>,
+    /// The confidence of all intervals.
+    pub confidence: Confidence,
     /// Seed of the random numbers that choose elements and the order of the measurements. The
     /// number of chosen elements does not depend on the seed.
     pub seed: u64,
@@ -75,6 +77,7 @@ impl Default for Settings {
             effort: Effort::Budget(Duration::from_secs(20)),
             force: false,
             warm_up: None,
+            confidence: Confidence::default(),
             seed: 1,
             heap: Policy::Kept,
             caches: CacheState::Warm,
@@ -189,6 +192,7 @@ impl Settings {
             heap: self.heap,
             caches: self.caches,
             warm_up: self.warm_up,
+            confidence: self.confidence,
             ..self.effort.run_settings()
         }
     }

@@ -14,8 +14,8 @@ use sixfold::Relation;
 use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::statistics::median;
 use sixfold_results::{
-    Agreement, BackendReport, Bound, BufferSpeed, Model, Reads, ResultRow, Samples, Timed, Why,
-    WhyRow,
+    Agreement, BackendReport, Bound, BufferSpeed, Confidence, Model, Reads, ResultRow, Samples,
+    Timed, Why, WhyRow,
 };
 use sixfold_workload::{
     Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MachineClock, MemorySpeed,
@@ -65,6 +65,8 @@ pub struct Timing {
     pub effort: Effort,
     /// Seed of the random numbers that choose the order of the measurements, and the elements of samples.
     pub seed: u64,
+    /// The confidence of all intervals.
+    pub confidence: Confidence,
 }
 
 /// The model that this version of Sixfold uses.
@@ -117,8 +119,9 @@ pub(crate) fn why_on(
     }
     // Counting has no time limit.
     study_settings.effort = Effort::Budget(Duration::ZERO);
-    if let Some(Timing { effort, seed }) = settings.timing {
-        (study_settings.effort, study_settings.seed) = (effort, seed);
+    if let Some(timing) = settings.timing {
+        (study_settings.effort, study_settings.seed) = (timing.effort, timing.seed);
+        study_settings.confidence = timing.confidence;
     }
     let budget = Budget::start(study_settings.effort, machine.clock());
     let mut run = start_run(study_settings.run_settings());
@@ -202,7 +205,8 @@ pub(crate) fn pool_why(mut launches: Vec<Why>) -> Why {
         control: launch.control.as_ref(),
     });
     let rows: Vec<LaunchRows<'_>> = rows.collect();
-    let pooled = pool_rows(&rows, |row| row.operation.clone());
+    let confidence = launches[0].run.settings.confidence;
+    let pooled = pool_rows(&rows, confidence, |row| row.operation.clone());
     let memory = MemorySpeed::from_speeds(pool_speeds(&launches));
     // An interrupted launch may lack counts.
     let whole = launches.iter().max_by_key(|launch| launch.rows.len());
@@ -418,6 +422,7 @@ mod tests {
             timing: Some(Timing {
                 effort: Effort::of_ms(20),
                 seed: 1,
+                confidence: Confidence::default(),
             }),
             ..WhySettings::default()
         };
@@ -461,6 +466,7 @@ mod tests {
             timing: Some(Timing {
                 effort: Effort::of_rounds(1),
                 seed: 1,
+                confidence: Confidence::default(),
             }),
             ..settings
         };
@@ -480,6 +486,7 @@ mod tests {
             timing: Some(Timing {
                 effort: Effort::of_rounds(2),
                 seed: 1,
+                confidence: Confidence::default(),
             }),
             ..WhySettings::default()
         };

@@ -2,7 +2,9 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 
-use sixfold_results::{Failed, FailureKind, Finding, Policy, Report, Results, Samples, Standing};
+use sixfold_results::{
+    Confidence, Failed, FailureKind, Finding, Policy, Report, Results, Samples, Standing,
+};
 use sixfold_workload::Operation;
 
 use crate::engine::effort::Effort;
@@ -195,6 +197,7 @@ fn written_documents_are_read_back_exactly() {
         needs: vec![sixfold_results::Need::Edit],
         max_memory: None,
         effort: Effort::of_rounds(2),
+        confidence: Confidence::default(),
         seed: 1,
         heap: Policy::Kept,
     };

@@ -31,7 +31,7 @@ fn changes(before: &Launches, after: &Launches) -> StudyChanges {
         ns: [ns(a), ns(b)],
         launches: [a, b],
     });
-    study_changes(&pairs.collect::<Vec<_>>(), false)
+    study_changes(&pairs.collect::<Vec<_>>(), false, Confidence::default())
 }
 
 /// Returns the numbers of the rows whose change is not due to chance.
@@ -114,7 +114,7 @@ fn a_machine_that_is_slower_as_a_whole_makes_no_row_slower_than_the_others() {
         ns: [1.0, 1.5],
         launches: [a, b],
     });
-    let other_machine = study_changes(&pairs.collect::<Vec<_>>(), true);
+    let other_machine = study_changes(&pairs.collect::<Vec<_>>(), true, Confidence::default());
     assert!(found(&other_machine).contains(&7));
 }
 
@@ -130,7 +130,7 @@ fn few_rows_are_compared_without_the_others() {
             ns,
             launches: [before, after],
         };
-        let changes = study_changes(&[pair], false);
+        let changes = study_changes(&[pair], false, Confidence::default());
         assert_eq!(changes.common, None);
         changes.rows[0]
     };
@@ -156,6 +156,9 @@ fn few_rows_are_compared_without_the_others() {
         ns: [1.0, 2.0],
         launches: [&one, &one],
     };
-    assert_eq!(study_changes(&[pair], false).rows, [None]);
-    assert_eq!(study_changes(&[], false).rows, []);
+    assert_eq!(
+        study_changes(&[pair], false, Confidence::default()).rows,
+        [None]
+    );
+    assert_eq!(study_changes(&[], false, Confidence::default()).rows, []);
 }

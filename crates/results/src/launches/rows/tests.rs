@@ -64,7 +64,7 @@ impl Launch {
 
 fn pool(launches: &[Launch]) -> PooledRows {
     let rows: Vec<LaunchRows<'_>> = launches.iter().map(Launch::rows).collect();
-    pool_rows(&rows, |row| row.operation.clone())
+    pool_rows(&rows, Confidence::default(), |row| row.operation.clone())
 }
 
 fn close(a: Option<f64>, b: f64) -> bool {
@@ -240,9 +240,9 @@ fn rows_that_differ_in_their_case_are_compared_as_the_group_says() {
     };
     let launches = [launch(1.0), launch(2.0)];
     let rows = launches.each_ref().map(Launch::rows);
-    let together = pool_rows(&rows, |row| row.backend.clone());
+    let together = pool_rows(&rows, Confidence::default(), |row| row.backend.clone());
     assert!(close(together.results[1].ratio_to_best, 3.0));
-    let apart = pool_rows(&rows, |row| row.case.clone());
+    let apart = pool_rows(&rows, Confidence::default(), |row| row.case.clone());
     assert_eq!(apart.results[1].standing, Some(Standing::Alone));
 }
 

@@ -15,7 +15,7 @@ use crate::engine::plan::MIN_ELEMENTS;
 use crate::engine::simulated_machine::SimulatedMachine;
 use sixfold_core::Counts;
 use sixfold_results::statistics::Median;
-use sixfold_results::{CacheState, RunSettings, noise};
+use sixfold_results::{CacheState, Confidence, RunSettings, noise};
 
 struct Synthetic {
     machine: SimulatedMachine,
@@ -238,13 +238,13 @@ fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
 fn the_control_shows_a_difference_of_its_two_entries() {
     // The second column of the control takes 20 % longer at every place.
     let entries = measured(&[7.0, 10.0, 8.4], false, Duration::from_secs(2), false);
-    let planted = control(&entries, 0, 2, "synthetic").expect("samples");
+    let planted = control(&entries, 0, 2, "synthetic", Confidence::default()).expect("samples");
     for row in &planted.operations {
         assert!(row.is_unsteady(), "{row:?}");
         assert!(noise(Some(&planted), &row.operation) >= 1.19, "{row:?}");
     }
     let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
-    let steady = control(&entries, 0, 2, "synthetic").expect("samples");
+    let steady = control(&entries, 0, 2, "synthetic", Confidence::default()).expect("samples");
     assert!(steady.operations.iter().all(|row| !row.is_unsteady()));
 }
 
@@ -426,7 +426,8 @@ fn a_control_leaves_out_times_of_zero() {
     for (_, time) in &mut entries[1].samples {
         *time = Time::from_wall_ns(0.0);
     }
-    let control = control(&entries, 0, 1, "synthetic").expect("two operations");
+    let control =
+        control(&entries, 0, 1, "synthetic", Confidence::default()).expect("two operations");
     assert_eq!(control.operations.len(), 2);
     assert!(control.worst.is_finite());
 }
@@ -434,7 +435,7 @@ fn a_control_leaves_out_times_of_zero() {
 #[test]
 fn a_control_shows_the_noise_of_a_drifting_machine() {
     let entries = measured(&[7.0, 10.0, 7.0], false, Duration::from_secs(2), false);
-    let control = control(&entries, 0, 2, "synthetic").expect("samples");
+    let control = control(&entries, 0, 2, "synthetic", Confidence::default()).expect("samples");
     assert_eq!(control.operations.len(), 3);
     assert!(control.typical < 1.02, "{control:?}");
     assert!(

@@ -4,7 +4,7 @@ use sixfold::shapes::Order;
 
 use sixfold_results::launches::ratio_over_launches;
 use sixfold_results::ranking::quotient;
-use sixfold_results::{Comparison, Factor, Larger, OrderEffect, StructureEffect, Time};
+use sixfold_results::{Comparison, Confidence, Factor, Larger, OrderEffect, StructureEffect, Time};
 use sixfold_workload::Operation;
 
 /// The time of one operation on one structure in one order.
@@ -27,7 +27,7 @@ pub(super) enum Values<'t> {
 }
 
 /// Returns the quotient of two times; `None` if one is unknown.
-fn factor(slow: &OrderTime<'_>, fast: &OrderTime<'_>) -> Option<Factor> {
+fn factor(slow: &OrderTime<'_>, fast: &OrderTime<'_>, confidence: Confidence) -> Option<Factor> {
     let times = [slow.ns?, fast.ns?];
     let ratio = match (&slow.values, &fast.values) {
         (Values::Rounds(slow), Values::Rounds(fast)) => quotient([slow, fast], times)?,
@@ -36,25 +36,31 @@ fn factor(slow: &OrderTime<'_>, fast: &OrderTime<'_>) -> Option<Factor> {
         }
         _ => return None,
     };
+    let interval = ratio.interval(confidence);
     Some(Factor {
         ratio: ratio.value,
-        ci_low: ratio.interval.map(|[low, _]| low),
-        ci_high: ratio.interval.map(|[_, high]| high),
+        ci_low: interval.map(|[low, _]| low),
+        ci_high: interval.map(|[_, high]| high),
     })
 }
 
 /// Compares the orders and the structures in one operation.
-pub(super) fn comparison(operation: Operation, timed: &[OrderTime<'_>], noise: f64) -> Comparison {
+pub(super) fn comparison(
+    operation: Operation,
+    timed: &[OrderTime<'_>],
+    noise: f64,
+    confidence: Confidence,
+) -> Comparison {
     let same_backend = |a: &OrderTime<'_>, b: &OrderTime<'_>| a.backend == b.backend;
     let by_backend = || timed.chunk_by(same_backend);
     let orders: Vec<OrderEffect> = by_backend()
-        .filter_map(|orders| order_effect(orders, noise))
+        .filter_map(|orders| order_effect(orders, noise, confidence))
         .collect();
     let local = by_backend().filter(|orders| !orders[0].scans);
     let best: Vec<&OrderTime<'_>> = local
         .filter_map(|orders| Some(extremes(orders)?.0))
         .collect();
-    let structures = structure_effect(&best, noise);
+    let structures = structure_effect(&best, noise, confidence);
     let larger = structures.as_ref().and_then(|between| {
         let local = orders.iter().filter(|effect| !effect.scans);
         let factors: Vec<Factor> = local.map(|effect| effect.worst_to_best).collect();
@@ -79,12 +85,16 @@ fn extremes<'t, 'v: 't>(
     Some((sorted.first()?.1, sorted.last()?.1))
 }
 
-fn order_effect(orders: &[OrderTime<'_>], noise: f64) -> Option<OrderEffect> {
+fn order_effect(
+    orders: &[OrderTime<'_>],
+    noise: f64,
+    confidence: Confidence,
+) -> Option<OrderEffect> {
     let (best, worst) = extremes(orders)?;
     if orders.iter().filter(|t| t.ns.is_some()).count() < 2 {
         return None;
     }
-    let worst_to_best = factor(worst, best)?;
+    let worst_to_best = factor(worst, best, confidence)?;
     let given = orders.iter().find(|t| t.order == Order::Given);
     Some(OrderEffect {
         backend: best.backend.into(),
@@ -92,17 +102,21 @@ fn order_effect(orders: &[OrderTime<'_>], noise: f64) -> Option<OrderEffect> {
         best: best.order.to_string(),
         worst: worst.order.to_string(),
         worst_to_best,
-        given_to_best: given.and_then(|given| factor(given, best)),
+        given_to_best: given.and_then(|given| factor(given, best, confidence)),
         matters: worst_to_best.is_beyond(noise),
     })
 }
 
-fn structure_effect(best: &[&OrderTime<'_>], noise: f64) -> Option<StructureEffect> {
+fn structure_effect(
+    best: &[&OrderTime<'_>],
+    noise: f64,
+    confidence: Confidence,
+) -> Option<StructureEffect> {
     let (fastest, slowest) = extremes(best.iter().copied())?;
     if best.len() < 2 {
         return None;
     }
-    let slowest_to_fastest = factor(slowest, fastest)?;
+    let slowest_to_fastest = factor(slowest, fastest, confidence)?;
     Some(StructureEffect {
         fastest: fastest.backend.into(),
         fastest_order: fastest.order.to_string(),
@@ -159,7 +173,7 @@ mod tests {
                 ]
             });
         let timed: Vec<OrderTime<'_>> = timed.collect();
-        comparison(Operation::Boundary, &timed, 1.02)
+        comparison(Operation::Boundary, &timed, 1.02, Confidence::default())
     }
 
     #[test]
@@ -223,11 +237,11 @@ mod tests {
             };
             rounds.truncate(2);
         }
-        let effect = order_effect(&a, 1.02).expect("two orders");
+        let effect = order_effect(&a, 1.02, Confidence::default()).expect("two orders");
         assert_eq!(effect.worst_to_best.ci_low, None);
         assert!(!effect.matters, "{effect:?}");
         a[1].ns = None;
-        assert_eq!(super::order_effect(&a, 1.02), None);
+        assert_eq!(super::order_effect(&a, 1.02, Confidence::default()), None);
     }
 
     #[test]
@@ -241,7 +255,7 @@ mod tests {
             ns: Some([14.4, 21.6][i]),
         };
         let both = [time(0, Order::Given), time(1, Order::Shuffled)];
-        let effect = order_effect(&both, 1.02).expect("two orders");
+        let effect = order_effect(&both, 1.02, Confidence::default()).expect("two orders");
         let Factor { ratio, ci_low, .. } = effect.worst_to_best;
         assert!((ratio - 1.5).abs() < 1e-9 && effect.matters, "{effect:?}");
         assert!(
@@ -249,6 +263,6 @@ mod tests {
             "{effect:?}"
         );
         let other = timed("a", Order::Morton, 10.0, false);
-        assert_eq!(factor(&both[0], &other), None);
+        assert_eq!(factor(&both[0], &other, Confidence::default()), None);
     }
 }

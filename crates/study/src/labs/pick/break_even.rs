@@ -1,12 +1,12 @@
 //! The number of operations after which building a structure has paid off.
 
-use sixfold_results::{BreakEven, Ranked, Time};
-use sixfold_workload::Task;
+use sixfold_results::{BreakEven, Confidence, Ranked, Time};
+use sixfold_workload::{Operation, Task};
 
 use crate::engine::measure::Entry;
 use crate::labs::pick::backend::Candidate;
 use sixfold_results::launches::difference_over_launches;
-use sixfold_results::statistics::Median;
+use sixfold_results::statistics::difference;
 
 /// A candidate with its measured tasks.
 pub(crate) struct MeasuredMix<'m> {
@@ -21,6 +21,18 @@ impl MeasuredMix<'_> {
     pub(crate) fn entry(&self, task: Task) -> Option<&Entry> {
         let mut entries = self.entries.iter().copied();
         entries.find(|entry| entry.job.task == task)
+    }
+
+    /// Returns whether `samples` contain a single run with cold caches.
+    pub(crate) fn is_warm_up_only(&self) -> bool {
+        match self.entry(Task::Mix).or_else(|| self.entry(Task::Program)) {
+            Some(whole) => whole.is_warm_up_only(),
+            None => {
+                let parts = self.entries.iter();
+                let mut parts = parts.filter(|e| e.operation() != Some(Operation::Build));
+                parts.any(|entry| entry.is_warm_up_only())
+            }
+        }
     }
 
     /// Returns whether `samples` contain an estimate, and so are a lower bound.
@@ -47,6 +59,7 @@ pub(crate) fn break_even(
     measured: &[MeasuredMix<'_>],
     ranking: &[Ranked],
     operations: f64,
+    confidence: Confidence,
 ) -> Vec<BreakEven> {
     let find = |name: &str| {
         let mut measured = measured.iter().filter(|m| !m.is_bound());
@@ -63,14 +76,18 @@ pub(crate) fn break_even(
                 let base = base.samples.iter().find(|(r, _)| r == round)?;
                 Some([base.1.ns(), time.ns()])
             });
-        Median::from_differences(&pairs.collect::<Vec<_>>())
+        difference(&pairs.collect::<Vec<_>>(), confidence)
     };
     rows(ranking, operations, saved)
 }
 
 /// Returns the break-even of each backend from the times of several launches. Time differences are formed within
 /// launches.
-pub(crate) fn break_even_over_launches(ranking: &[Ranked], operations: f64) -> Vec<BreakEven> {
+pub(crate) fn break_even_over_launches(
+    ranking: &[Ranked],
+    operations: f64,
+    confidence: Confidence,
+) -> Vec<BreakEven> {
     let measured = |ranked: &&Ranked| !ranked.estimated;
     let base = ranking.iter().find(|ranked| ranked.backend == BASE);
     let Some(base) = base.filter(measured) else {
@@ -79,28 +96,29 @@ pub(crate) fn break_even_over_launches(ranking: &[Ranked], operations: f64) -> V
     rows(ranking, operations, |ranked| {
         let times = [base.ns_per_operation, ranked.ns_per_operation];
         let launches = [&*base.launch_ns, &*ranked.launch_ns];
-        difference_over_launches(times, launches).filter(|_| !ranked.estimated)
+        difference_over_launches(times, launches, confidence).filter(|_| !ranked.estimated)
     })
 }
 
-/// Returns a row for each backend but the base. `saved` returns the time that it saves per operation.
+/// Returns a row for each backend but the base. `saved` returns the time that it saves per operation, and its
+/// interval.
 fn rows(
     ranking: &[Ranked],
     operations: f64,
-    saved: impl Fn(&Ranked) -> Option<Median>,
+    saved: impl Fn(&Ranked) -> Option<(f64, Option<[f64; 2]>)>,
 ) -> Vec<BreakEven> {
     let row = |ranked: &Ranked| {
-        let saved = saved(ranked)?;
+        let (saved, interval) = saved(ranked)?;
         let build = ranked.first_build_ns();
         let after = |ns: f64| (ns > 0.0).then(|| build / ns);
-        let pays = after(saved.value);
+        let pays = after(saved);
         Some(BreakEven {
             backend: ranked.backend.clone(),
             build_ns: build,
-            saves_ns_per_operation: saved.value,
+            saves_ns_per_operation: saved,
             operations: pays,
-            ci_low: saved.interval.and_then(|[_, high]| after(high)),
-            ci_high: saved.interval.and_then(|[low, _]| after(low)),
+            ci_low: interval.and_then(|[_, high]| after(high)),
+            ci_high: interval.and_then(|[low, _]| after(low)),
             uses: pays.map(|pays| pays / operations),
         })
     };

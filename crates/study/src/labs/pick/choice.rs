@@ -149,6 +149,7 @@ mod tests {
                 part(Operation::EdgeLength, parts[1]),
             ],
             samples: 10,
+            warm_up_only: false,
             faults: None,
             crates: Vec::new(),
             types: Vec::new(),

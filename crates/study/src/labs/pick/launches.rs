@@ -82,7 +82,8 @@ fn pool_mesh(launches: &[(&PickReport, OnMesh<'_>)]) -> Option<MeshOutcome> {
         control: control.as_ref(),
     });
     let of_launches: Vec<LaunchRows<'_>> = of_launches.collect();
-    let pooled = pool_rows(&of_launches, |row| row.operation.clone());
+    let confidence = first.run.settings.confidence;
+    let pooled = pool_rows(&of_launches, confidence, |row| row.operation.clone());
     let mut ranking: Vec<Ranked> = Vec::new();
     for ranked in launches.iter().flat_map(|(_, on_mesh)| on_mesh.ranking) {
         if ranking.iter().all(|known| known.backend != ranked.backend) {
@@ -111,7 +112,7 @@ fn pool_mesh(launches: &[(&PickReport, OnMesh<'_>)]) -> Option<MeshOutcome> {
         .and_then(|mut control| control.operations.pop());
     Some(MeshOutcome {
         mesh: on_first.mesh.clone(),
-        break_even: break_even_over_launches(&ranking, on_first.operations),
+        break_even: break_even_over_launches(&ranking, on_first.operations, confidence),
         ranking,
         excluded: Vec::new(),
         control_ratios: control.map_or(Vec::new(), |control| control.launches),
@@ -177,6 +178,7 @@ fn pool_ranked(of_each: &[&Ranked], pooled: &PooledRows, whole: &str) -> Option<
         estimated: mix.median_ns.is_none(),
         parts: parts.collect(),
         samples: mix.samples,
+        warm_up_only: mix.warm_up_only,
         faults: mix.faults,
         ..(*first).clone()
     })

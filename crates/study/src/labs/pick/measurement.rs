@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use sixfold_core::Counts;
 use sixfold_results::{
-    Agreement, BreakEven, Excluded, MeshReport, Ranked, Samples, Standing, Time, corrected_times,
+    Agreement, BreakEven, Confidence, Excluded, MeshReport, Ranked, Samples, Standing, Time,
+    corrected_times,
 };
 use sixfold_workload::{Operation, Task, TimedBackend};
 
@@ -134,6 +135,7 @@ impl PickMeasurement<'_, '_> {
             plan,
             counts: &self.counts,
             measured: &measured,
+            confidence: self.bench.confidence(),
         };
         let repeated = control.and_then(|control| evaluation.control_ratio(&control));
         let noise = repeated.map_or(1.0, |ratio| ratio.max(ratio.recip()));
@@ -148,7 +150,7 @@ impl PickMeasurement<'_, '_> {
         MeshOutcome {
             mesh: self.study_mesh.report(),
             samples,
-            break_even: break_even(&measured, &ranking, operations),
+            break_even: break_even(&measured, &ranking, operations, evaluation.confidence),
             ranking,
             excluded,
             control_ratios: repeated.map(Some).into_iter().collect(),
@@ -164,6 +166,7 @@ struct Evaluation<'e> {
     plan: &'e dyn TaskPlan,
     counts: &'e Counts,
     measured: &'e [MeasuredMix<'e>],
+    confidence: Confidence,
 }
 
 impl Evaluation<'_> {
@@ -182,20 +185,21 @@ impl Evaluation<'_> {
             false => m.samples.clone(),
         };
         let times: Vec<Vec<(u32, Time)>> = self.measured.iter().map(measured).collect();
-        let ranks = rank(&times, &corrected_times(&times), noise);
+        let ranks = rank(&times, &corrected_times(&times), noise, self.confidence);
         let best = ranks.iter().flatten().map(|rank| rank.time.value);
         let best = best.min_by(f64::total_cmp);
         let rows = self.measured.iter().zip(ranks);
         let rows = rows.filter_map(|(m, rank)| {
             let row = self.unranked(m)?;
+            let interval = |of: Median| of.interval(self.confidence);
             Some(match rank {
                 Some(rank) => Ranked {
                     ns_per_operation: rank.time.value,
-                    ns_ci_low: rank.time.interval.map(|[low, _]| low),
-                    ns_ci_high: rank.time.interval.map(|[_, high]| high),
+                    ns_ci_low: interval(rank.time).map(|[low, _]| low),
+                    ns_ci_high: interval(rank.time).map(|[_, high]| high),
                     ratio_to_best: rank.ratio.value,
-                    ci_low: rank.ratio.interval.map(|[low, _]| low),
-                    ci_high: rank.ratio.interval.map(|[_, high]| high),
+                    ci_low: interval(rank.ratio).map(|[low, _]| low),
+                    ci_high: interval(rank.ratio).map(|[_, high]| high),
                     tied_with_best: rank.standing != Some(Standing::Slower),
                     ..row
                 },
@@ -244,6 +248,7 @@ impl Evaluation<'_> {
             estimated: m.is_bound(),
             parts: self.plan.parts(m),
             samples: m.samples.len(),
+            warm_up_only: m.is_warm_up_only(),
             faults: m.most_faults(),
             crates: type_paths.iter().map(|path| package_of(path)).collect(),
             types: type_paths.iter().map(|&path| path.to_owned()).collect(),
@@ -305,6 +310,7 @@ mod tests {
                 plan: &plan,
                 counts: &counts,
                 measured,
+                confidence: Confidence::default(),
             };
             evaluation.ranking(NO_DIFFERENCE)
         };

@@ -194,7 +194,7 @@ fn elements(relation: Relation, counts: &Counts) -> f64 {
 #[cfg(test)]
 mod tests {
     use sixfold::shapes;
-    use sixfold_results::Policy;
+    use sixfold_results::{Confidence, Policy};
     use sixfold_workload::{Operation, built_in};
 
     use super::*;
@@ -208,6 +208,7 @@ mod tests {
             needs: Vec::new(),
             max_memory: None,
             effort: Effort::of_rounds(1),
+            confidence: Confidence::default(),
             seed: 1,
             heap: Policy::Kept,
         }

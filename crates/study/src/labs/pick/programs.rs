@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use sixfold::{QueryCost, UnknownName};
 use sixfold_results::{
-    AskedCount, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport, RunSettings, Time,
+    AskedCount, Confidence, Excluded, OwnData, PartCost, PickReport, Policy, ProgramReport,
+    RunSettings, Time,
 };
 use sixfold_workload::{
     Access, Amount, Contestant, Job, MachineClock, Operation, ProgramRefusal, Series, Suite,
@@ -51,6 +52,8 @@ pub struct ProgramSettings {
     pub max_memory: Option<u64>,
     /// How much is measured. A time limit is for all programs and meshes together.
     pub effort: Effort,
+    /// The confidence of all intervals.
+    pub confidence: Confidence,
     /// Seed of the random numbers that choose the order of the measurements.
     pub seed: u64,
     /// What happens to freed memory pages during the measurement.
@@ -66,6 +69,7 @@ impl Default for ProgramSettings {
             runs: 1,
             max_memory: None,
             effort: Effort::Budget(Duration::from_secs(20)),
+            confidence: Confidence::default(),
             seed: 1,
             heap: Policy::Kept,
             isolation: None,
@@ -237,6 +241,7 @@ impl ProgramSettings {
     pub(super) fn run_settings(&self) -> RunSettings {
         RunSettings {
             backends: self.backends.clone(),
+            confidence: self.confidence,
             seed: self.seed,
             heap: self.heap,
             ..self.effort.run_settings()

@@ -144,7 +144,8 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             .ci_low
             .zip(next.ci_high)
             .map_or(String::new(), |(low, high)| {
-                format!(" (95 %: {} to {})", figure(low), figure(high))
+                let confidence = report.run.settings.confidence;
+                format!(" ({confidence}: {} to {})", figure(low), figure(high))
             });
         format!(
             "; {} takes {} that time{sure}",

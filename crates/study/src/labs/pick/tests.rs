@@ -1,7 +1,7 @@
 //! Tests with mixers of known costs, on a simulated machine whose speed drifts.
 
 use sixfold::{PolygonMesh, QueryCost, shapes};
-use sixfold_results::{Policy, Ranked, Results, Status};
+use sixfold_results::{Confidence, Policy, Ranked, Results, Status};
 use sixfold_workload::{
     Job, MixBackend, Operation, Outcome, Series, Task, TimedBackend, TimedRun, built_in,
 };
@@ -75,6 +75,7 @@ fn settings(effort: Effort) -> PickSettings {
         needs: Vec::new(),
         max_memory: None,
         effort,
+        confidence: Confidence::default(),
         seed: 7,
         heap: Policy::Kept,
     }
@@ -565,17 +566,40 @@ fn the_figures_of_a_pick_are_its_times() {
 fn a_run_has_the_settings_of_its_pick() {
     let settings = PickSettings {
         backends: vec!["half-edge".into()],
+        confidence: "99%".parse().expect("allowed"),
         seed: 9,
         heap: Policy::System,
         ..settings(Effort::of_rounds(3))
     };
     let expected = RunSettings {
         backends: vec!["half-edge".into()],
+        confidence: "99%".parse().expect("allowed"),
         seed: 9,
         heap: Policy::System,
         ..Effort::of_rounds(3).run_settings()
     };
     assert_eq!(settings.run_settings(), expected);
+}
+
+#[test]
+fn a_launch_with_cold_caches_counts_only_without_better_ones() {
+    let settings = settings(Effort::of_rounds(3));
+    let measured = quick(&settings, &[shapes::octahedron()]).expect("a report");
+    let launch = |ns: f64, cold: bool| {
+        let mut launch = measured.clone();
+        for ranked in &mut launch.ranking {
+            (ranked.ns_per_operation, ranked.warm_up_only) = (ns, cold);
+        }
+        launch
+    };
+    let pooled = |launches: [PickReport; 3]| pool_picks(launches.into()).ranking[0].clone();
+    let warm = pooled([launch(10.0, false), launch(12.0, false), launch(99.0, true)]);
+    assert_eq!(warm.launch_ns, [Some(10.0), Some(12.0), None]);
+    assert!(!warm.warm_up_only && !measured.ranking[0].warm_up_only);
+    let cold = pooled([launch(10.0, false), launch(12.0, true), launch(99.0, true)]);
+    assert_eq!(cold.launch_ns, [Some(10.0), Some(12.0), Some(99.0)]);
+    let only_cold = pooled([launch(10.0, true), launch(12.0, true), launch(99.0, true)]);
+    assert!(only_cold.warm_up_only);
 }
 
 /// Returns the result of a measurement in which only a lower bound of half the fastest time is known

@@ -226,6 +226,7 @@ fn programs_are_measured_on_this_machine_with_the_settings_that_were_asked_for()
     let mut settings = ProgramSettings {
         backends: vec!["half-edge".into(), "winged-edge".into()],
         effort: Effort::of_rounds(1),
+        confidence: "99%".parse().expect("allowed"),
         seed: 9,
         heap: Policy::System,
         ..ProgramSettings::default()
@@ -237,6 +238,7 @@ fn programs_are_measured_on_this_machine_with_the_settings_that_were_asked_for()
     assert_eq!(report.ranking.len(), 2);
     let expected = RunSettings {
         backends: settings.backends.clone(),
+        confidence: settings.confidence,
         seed: 9,
         heap: Policy::System,
         ..settings.effort.run_settings()
