@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Callable
 
 HOLE = "{}"
-# The contents of a hole do not reach into the next cell of a table.
-FILLING = r"((?:(?! \| ).){1,200}?)"
+# The contents of a hole do not reach into the next cell of a table, or the next sentence.
+FILLING = r"((?:(?! \| |\. ).){1,200}?)"
 
 
 @dataclass

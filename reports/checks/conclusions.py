@@ -33,7 +33,6 @@ page = Claims(
         fifteen workloads on four meshes
         so one of them can have
         ten times as large
-        launches of a second
         differs from it in one thing
         between two backends
     """,
