@@ -97,6 +97,7 @@ def check_picture(write_it):
         drawn = advice.picture()
         if write_it:
             (data.ROOT / advice.PICTURE).write_text(drawn, encoding="utf-8")
+            return []
         is_drawn = data.content(advice.PICTURE) == drawn
     except data.Missing as error:
         return [f"{advice.PICTURE}: {error}"]
