@@ -237,7 +237,7 @@ fn a_workload_that_is_shown_can_be_run() {
     assert!(run.stdout.contains("For mine, "), "{}", run.stdout);
     let run = run_ok(&sixfold, &["workloads", "--json", "-"]);
     let all: Value = serde_json::from_str(&run.stdout).expect("JSON");
-    assert_eq!(all.as_array().map(Vec::len), Some(14));
+    assert_eq!(all.as_array().map(Vec::len), Some(15));
 }
 
 #[test]
