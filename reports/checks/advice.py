@@ -1,9 +1,11 @@
 """The advice of README.md: which backend to use for each kind of program, from the workloads on four meshes.
 
 The mean of a kind of program is the geometric mean over its workloads. Its interval comes from the times in each launch, as
-in crates/results/src/launches.rs: errors of workloads are independent, because each was measured on its own.
+in crates/results/src/launches.rs: for a single workload, it is the interval of `sixfold pick`. The errors of several workloads
+are independent, because each was measured on its own (degrees of freedom: Welch 1947).
 """
 
+import functools
 import math
 import statistics
 from dataclasses import dataclass
@@ -25,9 +27,7 @@ EDITS = ("remeshing", "decimation")
 # Two backends whose ratio is certainly below this are called equal, as in the command.
 EQUAL = 1.05
 # Of crates/results/src/launches.rs.
-ALIKE, TRIMMED = 1.5, 0.2
-# Student's quantile for the degrees of freedom of several workloads with ten launches or more.
-STUDENT = 2.0
+ALIKE, TRIMMED, LASTING_IN_RATIOS = 1.5, 0.2, 1 / 20
 
 
 @dataclass
@@ -45,13 +45,27 @@ class Mean:
 
 
 def squared_error(logs):
-    """Returns the squared error of the trimmed mean of logarithms of ratios, one for each launch."""
+    """Returns the squared error of the trimmed mean of logarithms of ratios, one for each launch, and its degrees of freedom."""
     if len(logs) < 2:
         raise data.Missing("a workload was measured in a single launch")
     logs, cut = sorted(logs), int(TRIMMED * len(logs))
     winsorised = [min(max(log, logs[cut]), logs[-1 - cut]) for log in logs]
-    kept = 1 - 2 * cut / len(logs)
-    return statistics.variance(winsorised) / kept**2 * ALIKE / len(logs)
+    kept = len(logs) - 2 * cut
+    variance = statistics.variance(winsorised) / (kept / len(logs)) ** 2
+    return variance * (ALIKE / len(logs) + LASTING_IN_RATIOS), kept - 1
+
+
+@functools.cache
+def student(freedom):
+    """Returns the 97.5 % quantile of Student's distribution."""
+    norm = math.exp(math.lgamma((freedom + 1) / 2) - math.lgamma(freedom / 2)) / math.sqrt(freedom * math.pi)
+    density = lambda t: norm * (1 + t * t / freedom) ** (-(freedom + 1) / 2)
+    below, step = 0.5, 1e-4
+    for place in range(int(20 / step)):
+        below += step * density((place + 0.5) * step)
+        if below >= 0.975:
+            return (place + 1) * step
+    raise ValueError(f"{freedom} degrees of freedom are too few")
 
 
 def mean(workloads, backend, other):
@@ -64,7 +78,11 @@ def mean(workloads, backend, other):
         return Mean(value, None, None)
     launches = lambda w: zip(w.rows[backend]["launch_ns"], w.rows[other]["launch_ns"])
     errors = [squared_error([math.log(a / b) for a, b in launches(w) if a and b]) for w in workloads]
-    half = STUDENT * math.sqrt(sum(errors)) / len(workloads)
+    squared = sum(error for error, _ in errors)
+    if squared == 0:
+        return Mean(value, value, value)  # a backend and itself
+    freedom = squared**2 / sum(error**2 / freedom for error, freedom in errors)
+    half = student(round(freedom, 1)) * math.sqrt(squared) / len(workloads)
     return Mean(value, value * math.exp(-half), value * math.exp(half))
 
 
@@ -94,9 +112,16 @@ class Kind:
         return [name for name in self.candidates if all(name in w.rows for w in self.on(mesh))]
 
     def used(self):
-        """Returns the backend with the least mean over the meshes, of those that can be used on each."""
+        """Returns the backend with the least mean over the meshes, of those that can be used on each; of those that are not
+        clearly slower, the one with the fewest bytes."""
         usable = [name for name in self.candidates if all(name in self.candidates_on(mesh) for mesh in self.meshes)]
-        return next(iter(means(self.everywhere(), usable)))
+        every = self.everywhere()
+        fast = [name for name, ratio in means(every, usable).items() if ratio.low is not None and ratio.low <= 1]
+        return min(fast, key=lambda name: every[0].rows[name]["bytes_per_vertex"])
+
+    def decided(self):
+        """Returns the meshes on which the used backend is clearly faster than the best other one."""
+        return [mesh for mesh in self.meshes if self.next_best(mesh)[1].low > 1]
 
     def next_best(self, mesh):
         """Returns the best other backend on a mesh, and its mean relative to the used one."""

@@ -50,6 +50,12 @@ def meshes():
     return figures.count(found[BUILT_IN]["faces"]), figures.count(found[QUADS]["faces"])
 
 
+@page.says("(per vertex, the corner table needs {} and half-edge {})")
+def sizes():
+    rows = data.workload(*SMOOTHING).rows
+    return tuple(f"{rows[name]['bytes_per_vertex']:.0f}" for name in ("corner-table", "half-edge"))
+
+
 for program, kind in advice.ROWS.items():
     page.row(f"| {program} | {{}} | {{}} | {{}} | {{}} | {{}} |", kind.row)
 

@@ -175,6 +175,20 @@ class Parts(unittest.TestCase):
         self.assertEqual(figures.ratio(1.996), "2.00")
         self.assertEqual(figures.time(999_700), "1.00 ms")
 
+    def test_an_interval_of_a_workload_is_that_of_the_command(self):
+        for (name, mesh), workload in data.workloads().items():
+            if name in ("subdivision", "smoothing"):
+                row = workload.rows["half-edge"] if workload.fastest != "half-edge" else workload.rows["winged-edge"]
+                found = advice.mean([workload], row["backend"], workload.fastest)
+                for end, expected in ((found.low, row["ci_low"]), (found.high, row["ci_high"])):
+                    self.assertAlmostEqual(end / expected, 1, delta=1e-3, msg=f"{name} on {mesh}")
+        for freedom, quantile in ((1, 12.706), (2, 4.303), (5, 2.571), (20, 2.086)):
+            self.assertAlmostEqual(advice.student(freedom), quantile, delta=1e-3)
+
+    def test_a_hole_ends_with_its_sentence(self):
+        said = claims.Claim("In {} of {} rows", lambda: None)
+        self.assertEqual(said.pattern().search("In some. In 4 of 5 rows")[1], "4")
+
     def test_a_sentence_that_begins_with_a_hole(self):
         with self.assertRaises(ValueError):
             claims.Claims("a.md").says("{} is faster")

@@ -133,8 +133,8 @@ pub(crate) fn chosen<T>(list: &[T], all: usize) -> usize {
 }
 
 impl Work {
-    /// Returns the work of so many `operations` on a mesh with `faces` faces, on `backends`: an empty list stands for all
-    /// structures.
+    /// Returns the work to measure this number of `operations` on a mesh with `faces` faces. An empty list of `backends`
+    /// stands for all structures.
     pub(crate) fn new(faces: usize, operations: usize, backends: &[String]) -> Self {
         let structures = sixfold::structure_infos().len();
         Self {

@@ -25,7 +25,8 @@ use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, saniti
 use crate::workloads::workload;
 use sixfold_results::numbers::{approximate, counted, duration, figure, grouped, rounded_down};
 
-/// How much longer than building it takes to prepare a mix on all backends, with copies of the mesh, and to run it once.
+/// How much longer than building it takes to prepare a mix on all backends, with copies of the mesh, and to run it once:
+/// 4.7 s (remeshing) to 7.8 s (rendering-upload) on 200,000 faces, where a study takes 0.8 s.
 const PREPARATION: usize = 4;
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
