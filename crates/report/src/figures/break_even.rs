@@ -525,7 +525,7 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], units: &
             Pays::Never => format!("{}: never pays", line.name),
             Pays::Unknown => line.name.to_owned(),
             Pays::After(Crossing { at, .. }) => {
-                format!("{}: pays after {} {units}", line.name, approximate(at))
+                format!("{}: pays after {}", line.name, approximate(at))
             }
         };
         canvas.text([right + 18.0, label + 4.0], &text, Style::new(12));
