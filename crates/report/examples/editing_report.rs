@@ -1,11 +1,11 @@
 //! Makes `reports/editing`: the time of edits on each structure.
 //!
-//! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [ROUNDS | --draw]`
+//! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [LAUNCHES | --draw]`
 //!
 //! `--draw` only draws the figure again, from the data in the folder.
 //!
-//! Every round runs each edit and each workload once on each structure and mesh. An edit is done at
-//! many places of a fresh copy. The tables show medians of thread-CPU time over the rounds.
+//! Every launch runs each edit and each workload on each structure and mesh, three times. An edit is done at
+//! many places of a fresh copy. The tables show medians of thread-CPU time over the launches.
 
 mod common;
 
@@ -15,8 +15,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::median;
-use serde::Deserialize;
+use common::{ROUNDS, Task, median};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
@@ -49,48 +49,55 @@ const CONCLUSIONS: &str = include_str!("common/editing.md");
 /// An edit or a workload, on a structure.
 type Line = (&'static str, &'static str);
 
-/// Times in nanoseconds per edit or element, by line and number of faces.
+/// Times of the launches in nanoseconds per edit or element, by line and number of faces.
 type Samples = BTreeMap<(Line, usize), Vec<f64>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = std::env::args().skip(1);
-    let folder = words
-        .next()
-        .ok_or("usage: editing_report FOLDER [ROUNDS | --draw]")?;
-    let folder = Path::new(&folder);
-    let rounds = match words.next().as_deref() {
-        Some("--draw") => return figure(folder),
-        Some(rounds) => rounds.parse()?,
-        None => 5,
+    let (folder, launches) = match common::task()? {
+        Task::Launch => return launch(),
+        Task::Draw(folder) => return figure(&folder),
+        Task::Measure(folder, launches) => (folder, launches),
     };
     let run = common::start();
-    let mut samples = Samples::new();
-    for side in SIDES {
-        let polygons = shapes::triangle_torus(side, side)?;
-        measure(&polygons, rounds, &mut samples)?;
-        eprintln!("{} faces measured", polygons.face_count());
+    let mut rows: BTreeMap<_, Row> = BTreeMap::new();
+    for row in common::launches::<Row>(launches)?.into_iter().flatten() {
+        let key = (row.what.clone(), row.backend.clone(), row.faces);
+        let times = row.cpu_ns.clone();
+        rows.entry(key)
+            .and_modify(|row| row.cpu_ns.extend(times))
+            .or_insert(row);
     }
-    fs::create_dir_all(folder)?;
-    fs::write(folder.join("README.md"), text(&run, rounds, &samples)?)?;
-    let rows = samples.iter().map(|(&((what, backend), faces), ns)| {
-        json!({"what": what, "backend": backend, "faces": faces, "cpu_ns": ns})
-    });
-    let rows: Vec<_> = rows.collect();
-    let data = json!({"environment": run.environment, "start": run.start, "rounds": rounds, "results": rows});
+    let rows: Vec<Row> = rows.into_values().collect();
+    fs::create_dir_all(&folder)?;
+    fs::write(folder.join("README.md"), text(&run, &rows)?)?;
+    let data = json!({"environment": run.environment, "start": run.start, "launches": launches, "rounds": ROUNDS, "results": rows});
     let data = serde_json::to_string_pretty(&data)? + "\n";
     fs::write(folder.join(DATA), data)?;
-    figure(folder)
+    figure(&folder)
+}
+
+/// Measures everything in this process, and writes the rows to standard output.
+fn launch() -> Result<(), Box<dyn Error>> {
+    common::start();
+    let mut samples = Samples::new();
+    for side in SIDES {
+        measure(&shapes::triangle_torus(side, side)?, &mut samples)?;
+    }
+    let rows = samples.iter().map(|(&((what, backend), faces), ns)| Row {
+        what: what.into(),
+        backend: backend.into(),
+        faces,
+        cpu_ns: vec![median(ns)],
+    });
+    let rows: Vec<Row> = rows.collect();
+    Ok(serde_json::to_writer(std::io::stdout(), &rows)?)
 }
 
 fn scans(info: &StructureInfo) -> bool {
     info.edits[Edit::CollapseEdge as usize] == Some(QueryCost::Scan)
 }
 
-fn measure(
-    polygons: &PolygonMesh,
-    rounds: usize,
-    samples: &mut Samples,
-) -> Result<(), Box<dyn Error>> {
+fn measure(polygons: &PolygonMesh, samples: &mut Samples) -> Result<(), Box<dyn Error>> {
     let faces = polygons.face_count();
     let mut jobs: Vec<(Line, Box<dyn Editor>)> = Vec::new();
     for backend in Backend::structures() {
@@ -120,7 +127,7 @@ fn measure(
         }
     }
     let clock = MachineClock::start();
-    for _ in 0..rounds {
+    for _ in 0..ROUNDS {
         for (line, editor) in &mut jobs {
             // A small mesh has few places. More runs reduce the error of the clock.
             let copies = (MIN_TOTAL_FACES / faces).max(1);
@@ -137,11 +144,13 @@ fn measure(
     Ok(())
 }
 
-/// Returns the points of a line, sorted by the number of faces.
-fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
-    let sizes = samples.iter().filter(|((other, _), _)| *other == line);
+/// Returns the numbers of faces and the times of an edit or a workload on a structure, sorted by the number of faces.
+fn points(rows: &[Row], what: &str, backend: &str) -> Vec<(f64, f64)> {
+    let sizes = rows
+        .iter()
+        .filter(|row| (&*row.what, &*row.backend) == (what, backend));
     sizes
-        .map(|((_, faces), ns)| (*faces as f64, median(ns)))
+        .map(|row| (row.faces as f64, median(&row.cpu_ns)))
         .collect()
 }
 
@@ -168,9 +177,14 @@ fn time_text(ns: f64) -> String {
     }
 }
 
-fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt::Error> {
+fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of edits on each structure, as the mesh grows\n\n");
-    text += &common::introduction(run, "editing_report", "reports/editing", rounds);
+    text += &common::introduction(
+        run,
+        "editing_report",
+        "reports/editing",
+        rows.iter().map(|row| &row.cpu_ns[..]),
+    );
     writeln!(
         text,
         " The meshes are tori of 1,058 to 1,036,800 triangles. A place is a face with its edges and vertices. Each edit is done at up to {PLACES} places of a new copy of the mesh ({PLACES_SCANNED} places if the structure scans all faces). The places are spread over the mesh, in no particular order. One untimed edit comes before the timed edits, because the first edit reallocates full tables. Every edit checks whether it is legal. No edit writes a log of its changes.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
@@ -179,7 +193,7 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
         text,
         "\n## One edit\n\nEach cell has the time of one edit on a mesh of 16,200 faces, and two exponents of growth: from 1,058 to 16,200 faces (the structures fit into the cache), and from 16,200 to 1,036,800 faces (larger than the cache). The time of an edit is nearly proportional to the number of faces to the power of the exponent. An exponent of about 0 means that the time is constant. An exponent of about 1 means that the edit scans the whole mesh.\n"
     )?;
-    table(&mut text, samples, Edit::ALL.map(Edit::name), |points| {
+    table(&mut text, rows, Edit::ALL.map(Edit::name), |points| {
         let at = points
             .iter()
             .rev()
@@ -206,7 +220,7 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
     )?;
     table(
         &mut text,
-        samples,
+        rows,
         EditPass::ALL.map(EditPass::name),
         |points| {
             let (first, last) = (points.first()?, points.last()?);
@@ -231,7 +245,7 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
 /// Writes a table with a row for each of `what` and a column for each structure.
 fn table<const N: usize>(
     text: &mut String,
-    samples: &Samples,
+    rows: &[Row],
     what: [&'static str; N],
     cell: impl Fn(&[(f64, f64)]) -> Option<String>,
 ) -> std::fmt::Result {
@@ -246,7 +260,7 @@ fn table<const N: usize>(
     for what in what {
         write!(text, "| `{what}` |")?;
         for backend in &backends {
-            let points = points(samples, (what, backend.name));
+            let points = points(rows, what, backend.name);
             write!(text, " {} |", cell(&points).unwrap_or("–".into()))?;
         }
         text.push('\n');
@@ -260,8 +274,8 @@ struct Data {
     results: Vec<Row>,
 }
 
-/// The times of an edit on a structure and a mesh.
-#[derive(Deserialize)]
+/// The times of an edit on a structure and a mesh, one for each launch.
+#[derive(Deserialize, Serialize)]
 struct Row {
     what: String,
     backend: String,
@@ -280,12 +294,8 @@ fn figure(folder: &Path) -> Result<(), Box<dyn Error>> {
         Edit::SetPosition,
         Edit::Compact,
     ];
-    let line = |edit: Edit, backend: &'static str| {
-        let rows = data.results.iter();
-        let rows = rows.filter(|row| (&*row.what, &*row.backend) == (edit.name(), backend));
-        let points = rows.map(|row| (row.faces as f64, median(&row.cpu_ns)));
-        (backend, points.collect())
-    };
+    let line =
+        |edit: Edit, backend: &'static str| (backend, points(&data.results, edit.name(), backend));
     let panel = |edit: Edit| Panel {
         title: edit.name().into(),
         x_label: "faces of the mesh".into(),

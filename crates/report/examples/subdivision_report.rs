@@ -4,11 +4,11 @@
 //! cargo run --release -p sixfold-report --example subdivision_report -- reports/subdivision
 //! ```
 //!
-//! The optional last argument is the number of rounds (5 without it), or `--draw`: this only draws the figure
+//! The optional last argument is the number of launches (5 without it), or `--draw`: this only draws the figure
 //! again, from the data in the folder.
 //!
-//! Every round runs each scheme, method and structure once at each level, on one thread. The table
-//! and the figure show medians of thread-CPU time over the rounds.
+//! Every launch runs each scheme, method and structure at each level three times, on one thread. The table
+//! and the figure show medians of thread-CPU time over the launches.
 
 mod common;
 
@@ -18,7 +18,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use serde::Deserialize;
+use common::{ROUNDS, Task};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, shapes};
@@ -54,51 +55,64 @@ at every level.
 type Line = (&'static str, &'static str, &'static str);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = std::env::args().skip(1);
-    let folder = words
-        .next()
-        .ok_or("usage: subdivision_report FOLDER [ROUNDS | --draw]")?;
-    let folder = Path::new(&folder);
-    let rounds = match words.next().as_deref() {
-        Some("--draw") => return figure(folder),
-        Some(rounds) => rounds.parse()?,
-        None => 5,
+    let (folder, launches) = match common::task()? {
+        Task::Launch => return launch(),
+        Task::Draw(folder) => return figure(&folder),
+        Task::Measure(folder, launches) => (folder, launches),
     };
     let run = common::start();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let polygons = shapes::geodesic(16)?;
-    let samples = pool.install(|| measure(&polygons, rounds))?;
-    fs::create_dir_all(folder)?;
-    fs::write(folder.join("README.md"), text(&run, rounds, &samples)?)?;
-    let rows = samples.iter().map(|(&(line, level), sample)| {
-        let (scheme, way, backend) = line;
-        json!({"scheme": scheme, "way": way, "backend": backend, "level": level,
-               "faces": sample.faces, "cpu_ns": sample.ns})
-    });
-    let rows: Vec<_> = rows.collect();
-    let data = json!({"environment": run.environment, "start": run.start, "rounds": rounds, "results": rows});
+    let mut rows: BTreeMap<_, Row> = BTreeMap::new();
+    for row in common::launches::<Row>(launches)?.into_iter().flatten() {
+        let key = (
+            row.scheme.clone(),
+            row.way.clone(),
+            row.backend.clone(),
+            row.level,
+        );
+        let times = row.cpu_ns.clone();
+        rows.entry(key)
+            .and_modify(|row| row.cpu_ns.extend(times))
+            .or_insert(row);
+    }
+    let rows: Vec<Row> = rows.into_values().collect();
+    fs::create_dir_all(&folder)?;
+    fs::write(folder.join("README.md"), text(&run, &rows)?)?;
+    let data = json!({"environment": run.environment, "start": run.start, "launches": launches, "rounds": ROUNDS, "results": rows});
     let data = serde_json::to_string_pretty(&data)? + "\n";
     fs::write(folder.join(DATA), data)?;
-    figure(folder)
+    figure(&folder)
 }
 
-/// The number of faces and the times of the runs, for one line at one level.
+/// Measures everything in this process, and writes the rows to standard output.
+fn launch() -> Result<(), Box<dyn Error>> {
+    common::start();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let polygons = shapes::geodesic(16)?;
+    let samples = pool.install(|| measure(&polygons))?;
+    let rows = samples
+        .into_iter()
+        .map(|(((scheme, way, backend), level), sample)| Row {
+            scheme: scheme.into(),
+            way: way.into(),
+            backend: backend.into(),
+            level,
+            faces: sample.faces,
+            cpu_ns: vec![common::median(&sample.ns)],
+        });
+    let rows: Vec<Row> = rows.collect();
+    Ok(serde_json::to_writer(std::io::stdout(), &rows)?)
+}
+
+/// The number of faces and the times of the rounds, for one line at one level.
 #[derive(Default)]
 struct Sample {
     faces: usize,
     ns: Vec<f64>,
 }
 
-impl Sample {
-    /// Returns the median time per face in nanoseconds.
-    fn ns_per_face(&self) -> f64 {
-        common::median(&self.ns) / self.faces as f64
-    }
-}
-
 type Samples = BTreeMap<(Line, u32), Sample>;
 
-fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, SubdivisionError> {
+fn measure(polygons: &PolygonMesh) -> Result<Samples, SubdivisionError> {
     let mut samples = Samples::new();
     let mut jobs: Vec<(Line, u32, Box<dyn Refiner>)> = Vec::new();
     let clock = MachineClock::start();
@@ -123,7 +137,7 @@ fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivision
             }
         }
     }
-    for _ in 0..rounds {
+    for _ in 0..ROUNDS {
         for (line, level, refiner) in &mut jobs {
             let start = clock.now();
             refiner.run()?;
@@ -136,9 +150,14 @@ fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivision
     Ok(samples)
 }
 
-fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt::Error> {
+fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
-    text += &common::introduction(run, "subdivision_report", "reports/subdivision", rounds);
+    text += &common::introduction(
+        run,
+        "subdivision_report",
+        "reports/subdivision",
+        rows.iter().map(|row| &row.cpu_ns[..]),
+    );
     text += " The control mesh is a geodesic sphere of 5,120 triangles. A time is for all levels up to the level in the head of the column, in nanoseconds per face of this level.\n\n";
     text += "`gather` queries the neighbourhood of each new point, and `scatter` makes one pass over the faces. After `gather` and `scatter`, the structure is built again from polygons. `native_fresh` and `native` split the structure's own tables: `native_fresh` writes the result into newly allocated tables, and `native` writes the result into the tables of the previous run. The sign – means that the level was not measured: the previous level took more than 0.4 s, or the structure cannot hold quads.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
@@ -153,7 +172,11 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
         for way in Way::ALL {
             for backend in Backend::structures() {
                 let line = (scheme.name(), way.name(), backend.name());
-                let at = |level| samples.get(&(line, level)).map(Sample::ns_per_face);
+                let row = |level| {
+                    rows.iter()
+                        .find(|row| (row.line(), row.level) == (line, level))
+                };
+                let at = |level| row(level).map(Row::ns_per_face);
                 if at(1).is_none() {
                     continue;
                 }
@@ -179,14 +202,26 @@ struct Data {
     results: Vec<Row>,
 }
 
-/// The times of a line at one level.
-#[derive(Deserialize)]
+/// The times of a scheme, a method and a structure at one level, one for each launch.
+#[derive(Deserialize, Serialize)]
 struct Row {
     scheme: String,
     way: String,
     backend: String,
+    level: u32,
     faces: usize,
     cpu_ns: Vec<f64>,
+}
+
+impl Row {
+    fn line(&self) -> (&str, &str, &str) {
+        (&self.scheme, &self.way, &self.backend)
+    }
+
+    /// Returns the median time per face in nanoseconds.
+    fn ns_per_face(&self) -> f64 {
+        common::median(&self.cpu_ns) / self.faces as f64
+    }
 }
 
 /// Draws the time per new face over the number of faces, from the data in `folder`.
@@ -196,11 +231,8 @@ fn figure(folder: &Path) -> Result<(), Box<dyn Error>> {
     let line = |scheme: Scheme, way: Way, backend: &'static str| {
         let line = (scheme.name(), way.name(), backend);
         let rows = data.results.iter();
-        let rows = rows.filter(|row| (&*row.scheme, &*row.way, &*row.backend) == line);
-        let points = rows.map(|row| {
-            let faces = row.faces as f64;
-            (faces, common::median(&row.cpu_ns) / faces)
-        });
+        let rows = rows.filter(|row| row.line() == line);
+        let points = rows.map(|row| (row.faces as f64, row.ns_per_face()));
         (backend, points.collect())
     };
     let panel = |(scheme, way): (Scheme, Way)| Panel {

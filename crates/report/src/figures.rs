@@ -456,7 +456,8 @@ pub(crate) fn machines(results: &Results) -> Vec<String> {
     described.collect()
 }
 
-pub(crate) fn machine(environment: &Environment) -> String {
+/// Describes the machine and the program of a measurement in one line.
+pub fn machine(environment: &Environment) -> String {
     let Environment {
         cpu_model,
         cores,

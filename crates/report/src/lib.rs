@@ -41,6 +41,7 @@ pub use changes::Compared;
 pub use colours::structure_colours;
 pub use data::date;
 pub use figure::{Figure, Table, TitledTable};
+pub use figures::machine;
 pub use panels::{Panel, panels};
 pub use papers::{NoPdf, PaperFile, PaperFiles};
 pub use pdf::PdfError;
