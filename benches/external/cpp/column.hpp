@@ -340,6 +340,10 @@ class Runner {
 
 inline void write_line(const nlohmann::json& what) { std::cout << what.dump() << std::endl; }
 
+// Returns the name and the version of the library, the compiler and its flags.
+template <class Adapter>
+std::string described() { return Adapter::library() + " (" COMPILER ")"; }
+
 // Runs the whole program: reads the mesh that the first argument names, and answers until standard input ends.
 template <class Adapter>
 int serve(int argc, char** argv) {
@@ -350,14 +354,14 @@ int serve(int argc, char** argv) {
         try {
             runner = std::make_unique<Runner<Adapter>>(input);
         } catch (const std::runtime_error& refusal) {
-            write_line({{"protocol", 1}, {"holds", false}, {"library", Adapter::library()}, {"reason", refusal.what()}});
+            write_line({{"protocol", 1}, {"holds", false}, {"library", described<Adapter>()}, {"reason", refusal.what()}});
             return 0;
         }
         // The allocator of the GNU C library: Sixfold can make it keep pages by an environment variable.
 #ifdef __GLIBC__
-        write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}, {"bytes", runner->size()}, {"heap", "glibc"}});
+        write_line({{"protocol", 1}, {"holds", true}, {"library", described<Adapter>()}, {"bytes", runner->size()}, {"heap", "glibc"}});
 #else
-        write_line({{"protocol", 1}, {"holds", true}, {"library", Adapter::library()}});
+        write_line({{"protocol", 1}, {"holds", true}, {"library", described<Adapter>()}});
 #endif
         for (std::string line; std::getline(std::cin, line);) {
             const auto request = nlohmann::json::parse(line);

@@ -79,6 +79,7 @@ pub trait Column: Sized {
 struct Header<'a> {
     protocol: u32,
     holds: bool,
+    /// The name and the version of the library, the compiler and its flags.
     library: &'a str,
     /// The bytes that the library allocated for the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -134,7 +135,7 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
     write_line(&Header {
         protocol: 1,
         holds: built.is_ok(),
-        library: C::LIBRARY,
+        library: &format!("{} ({})", C::LIBRARY, env!("COMPILER")),
         bytes: built.as_ref().ok().and_then(|(_, bytes)| *bytes),
         reason: built.as_ref().err().cloned(),
         heap: cfg!(all(target_os = "linux", target_env = "gnu")).then_some("glibc"),
