@@ -180,7 +180,8 @@ def main():
     parser.add_argument("--to", type=Path, required=True, help="the folder of the report")
     parser.add_argument("--budget", type=float, default=3, help="seconds for each measurement")
     arguments = parser.parse_args()
-    built = Path(__file__).resolve().parents[2] / "target/release"
+    target = os.environ.get("CARGO_TARGET_DIR") or Path(__file__).resolve().parents[2] / "target"
+    built = Path(target) / "release"
     sixfold, programs = str(built / "sixfold"), str(built / "examples/programs")
     rows = []
     with tempfile.TemporaryDirectory() as scratch:

@@ -3,7 +3,7 @@
 #
 #   benches/external/beside.sh bunny.obj --budget 60s --report beside
 #
-# COLUMNS="lox cgal" selects columns. The programs are built in target/columns. SIXFOLD is the program to
+# LIBRARIES="lox cgal" selects columns. The programs are built in target/columns. SIXFOLD is the program to
 # run; the default is the release build of this repository.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -11,7 +11,7 @@ out=$here/../../target/columns
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 export PATH=$out/rust/release:$out/cpp:$PATH
-columns=${COLUMNS:-lox alum parry3d tri-mesh openmesh cgal opensubdiv}
+columns=${LIBRARIES:-lox alum parry3d tri-mesh openmesh cgal opensubdiv}
 
 for name in $columns; do
     case $name in lox | alum | parry3d | tri-mesh | openmesh | cgal | opensubdiv) ;;

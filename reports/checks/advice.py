@@ -38,6 +38,14 @@ class Mean:
     low: float | None
     high: float | None
 
+    def verdict(self):
+        """Returns what the interval says, if it does not say that one of the two is clearly faster."""
+        if self.low is None:
+            return ""
+        if max(self.high, 1 / self.low) <= EQUAL:
+            return "equal: "
+        return "undecided: " if self.low <= 1 <= self.high else ""
+
     def text(self):
         if self.low is None:
             return f"≥ {figures.ratio(self.value, math.floor)}×"
@@ -77,12 +85,17 @@ def mean(workloads, backend, other):
     if any(w.rows[name]["estimated"] for w in workloads for name in (backend, other)):
         return Mean(value, None, None)
     launches = lambda w: zip(w.rows[backend]["launch_ns"], w.rows[other]["launch_ns"])
-    errors = [squared_error([math.log(a / b) for a, b in launches(w) if a and b]) for w in workloads]
+    return with_interval(value, [[math.log(a / b) for a, b in launches(w) if a and b] for w in workloads])
+
+
+def with_interval(value, measurements):
+    """Returns a geometric mean with its interval, from the logarithms of the ratios in the launches of each measurement."""
+    errors = [squared_error(logs) for logs in measurements]
     squared = sum(error for error, _ in errors)
     if squared == 0:
         return Mean(value, value, value)  # a backend and itself
     freedom = squared**2 / sum(error**2 / freedom for error, freedom in errors)
-    half = student(round(freedom, 1)) * math.sqrt(squared) / len(workloads)
+    half = student(round(freedom, 1)) * math.sqrt(squared) / len(measurements)
     return Mean(value, value * math.exp(-half), value * math.exp(half))
 
 
@@ -135,10 +148,15 @@ class Kind:
         if mesh not in self.meshes:
             return "–"
         name, ratio = self.next_best(mesh)
-        verdict = ""
-        if ratio.low is not None and ratio.low <= 1 <= ratio.high:
-            verdict = "equal: " if max(ratio.high, 1 / ratio.low) <= EQUAL else "undecided: "
-        return f"{verdict}{plain(name)} {ratio.text()}"
+        return f"{ratio.verdict()}{plain(name)} {ratio.text()}"
+
+    def described(self):
+        """Returns the workloads and the candidates in words."""
+        left_out = [name for name in data.workload_names() if name not in self.workloads]
+        listed = lambda names: ", ".join(f"`{name}`" for name in names)
+        workloads = listed(self.workloads) if len(self.workloads) <= len(left_out) else f"all but {listed(left_out)}"
+        named = {BACKENDS: "all backends", STRUCTURES: "the six structures", ANY_MESH: ", ".join(map(plain, ANY_MESH))}
+        return workloads, named[self.candidates]
 
     def row(self):
         return link(self.used()), *map(self.cell, MESHES)

@@ -155,7 +155,7 @@ reading = Claims(
     """,
 )
 
-EXAMPLE = ("half-edge", "winged-edge", "corner-table", "face-vertex", "indexed-face-set", "polygon-soup")
+EXAMPLE = ("half-edge", "winged-edge", "corner-table", "indexed-face-set", "face-vertex", "polygon-soup")
 
 
 def example(backend):
@@ -164,8 +164,8 @@ def example(backend):
     row = study().rows["edge_length", backend]
     shown = figures.three_digits(figures.shown(ns(backend)) / figures.shown(ns("half-edge")))
     low, high = (figures.three_digits(row[f"ratio_ci_{end}"]) for end in ("low", "high"))
-    tied = {"tied": " undecided", "slower": ""}[row["standing"]]
-    return f"{shown} {low} to {high} {figures.time(ns(backend))}{tied}"
+    remark = {"undecided": " undecided", "slower": ""}[row["standing"]]
+    return f"{shown} {low} to {high} {figures.time(ns(backend))}{remark}"
 
 
 @reading.says("per edge " + " ".join(f"{name} {{}}" for name in EXAMPLE) + " ```")
@@ -194,7 +194,7 @@ def tie():
     return f"{less:.2f}", *ends, percent(1 - low), percent(high - 1)
 
 
-@reading.says("By how much is not so clear: between {} and {} times the time of half-edge.")
+@reading.says("By how much is less certain: between {} and {} times the time of half-edge.")
 def slower():
     row = study().rows["edge_length", "corner-table"]
     return figures.three_digits(row["ratio_ci_low"]), figures.three_digits(row["ratio_ci_high"])

@@ -2,12 +2,11 @@
 
 import math
 
-from checks import advice, data, figures, repeatability, workload_table
+from checks import advice, beside, data, figures, repeatability, workload_table
 from checks.claims import Claims
 from checks.data import BUILT_IN, ENOUGH, LARGE, LOCAL, QUADS, RELATIONS, SCANNING, STRUCTURES, WALKING
 
 STUDY = "reports/built-in-mesh/results.json"
-BESIDE = "reports/beside/results.json"
 ORDERS = "reports/orders/orders.json"
 GROWTH = {order: f"reports/growth/{name}.json" for order, name in (("given", "growth"), ("shuffled", "growth-shuffled"))}
 # Operations whose rows of the elements do not hold the answer.
@@ -17,12 +16,13 @@ page = Claims(
     "reports/README.md",
     definitions="""
         two letters (V vertex, E edge, F face)
-        quotient of two median times
+        quotient of two times of the same
         95 % intervals
         the nine relations
         one of the six structures
-        has the three backends
+        has the three fastest backends
         times of two structures are close
+        two operations, during which
         two schemes by three methods
         five spatial indices
         eight programs
@@ -31,10 +31,13 @@ page = Claims(
         from a thousand to four million triangles
         from a thousand to a million faces
         fifteen workloads on four meshes
+        The two rows of programs
         so one of them can have
         ten times as large
         differs from it in one thing
-        between two backends
+        measures one structure twice
+        share the first place
+        shares the first place
     """,
 )
 
@@ -55,19 +58,17 @@ def triangles():
     return figures.count(data.document(STUDY)["meshes"][0]["faces"])
 
 
-@page.says(
-    "the workloads on {} hardware threads of an {}, and the rest on {} cores of an {} with {} MiB of last-level cache"
-)
+@page.says("on {} cores of an {} with {} MiB of last-level cache")
 def machines():
-    xeon, amd = data.workload_environments()[0], data.environment(GROWTH["given"])
-    for own, others in ((xeon, data.workload_environments()), (amd, map(data.environment, (STUDY, ORDERS, BESIDE, GROWTH["shuffled"])))):
-        data.require(all((e["cpu_model"], e["caches"]) == (own["cpu_model"], own["caches"]) for e in others), "other machines")
-    cache = max(amd["caches"], key=lambda cache: cache["level"])["bytes"] / 2**20
-    return figures.word(xeon["cores"]), xeon["cpu_model"], figures.word(amd["cores"]), amd["cpu_model"], f"{cache:.0f}"
+    environments = [*map(data.environment, (STUDY, ORDERS, beside.DATA, *GROWTH.values())), *data.workload_environments()]
+    own = environments[0]
+    data.require(all((e["cpu_model"], e["caches"]) == (own["cpu_model"], own["caches"]) for e in environments), "other machines")
+    cache = max(own["caches"], key=lambda cache: cache["level"])["bytes"] / 2**20
+    return figures.word(own["cores"]), own["cpu_model"], f"{cache:.0f}"
 
 
-@page.says("Two measurements of one backend differ by up to {} in the report on orders, typically by up to {} at one size in "
-           "the report on growth, and by up to {} in the workloads")
+@page.says("the difference is the noise: at most {} in the report on orders, {} in the median row of a size in the report on growth, "
+           "and {} in a workload")
 def noise():
     growth = [size["control"]["typical"] for order in GROWTH for size in data.sizes(order)]
     picked = [workload.found["noise"] for workload in data.workloads().values()]
@@ -283,7 +284,7 @@ def growths(order, operations):
 
 
 @page.says(
-    "From {} to {} triangles in the original order, the time per element of half-edge, winged-edge and corner table grows "
+    "From {} to {} triangles in the original order, the time per element of half-edge, winged-edge and corner table changes "
     "by a factor of {} to {}, and in a breadth-first search over faces by a factor of {} to {}."
 )
 def growth():
@@ -299,42 +300,33 @@ def growth_shuffled():
     return figures.span(growths("shuffled", AROUND_VERTICES))
 
 
-@page.says("Half-edge is larger than the last-level cache from {} triangles on, the corner table from {} triangles on")
+@page.says("The largest structures of the report fit into the last-level cache, which the machine shares with others: half-edge is larger than "
+           "it from {} triangles on, the corner table from {} triangles on")
 def cache_limits():
     found = data.finding(GROWTH["given"], "growth")
     last = max(limit["level"] for limit in found["cache_limits"])
     faces = {limit["backend"]: limit["faces"] for limit in found["cache_limits"] if limit["level"] == last}
+    largest = max(size["faces"] for order in GROWTH for size in data.sizes(order))
+    data.require(largest < min(faces[name] for name in LOCAL), f"a structure of {largest} faces is larger")
     return figures.count(faces["half-edge"]), figures.count(faces["corner-table"])
 
 
-def libraries():
-    return [name for name in data.study(BESIDE).backends if name not in STRUCTURES]
-
-
-def mean_ratio(library):
-    """Returns the geometric mean over the relations, relative to half-edge."""
-    return data.geometric_mean(data.study(BESIDE).ratios(library, "half-edge", RELATIONS.values()))
-
-
-def library_mean(library):
-    return figures.ratio(mean_ratio(library))
-
-
-@page.says("**Of {} other libraries, only {} is faster than half-edge on average.**")
-def faster():
-    names = {"opensubdiv": "OpenSubdiv", "cgal": "CGAL", "openmesh": "OpenMesh"}
-    fast = [names.get(name, name) for name in libraries() if mean_ratio(name) < 1]
-    return figures.word(len(libraries())), figures.names(fast)
+@page.says("**Of {} other libraries, only {} is as fast as half-edge on average.**")
+def as_fast():
+    faster, equal = beside.faster()
+    data.require(not faster, f"{faster} are faster")
+    return figures.word(len(beside.libraries())), figures.names(map(beside.title, equal))
 
 
 @page.says("Relative to half-edge on the built-in mesh (geometric mean over the nine relations), OpenSubdiv takes {} times the "
            "time, parry3d {}, CGAL's Surface_mesh {}, OpenMesh {}, lox {}, alum {} and tri-mesh {}.")
 def beside_means():
-    return tuple(map(library_mean, ("opensubdiv", "parry3d", "cgal", "openmesh", "lox", "alum", "tri-mesh")))
+    means = map(beside.on_relations, ("opensubdiv", "parry3d", "cgal", "openmesh", "lox", "alum", "tri-mesh"))
+    return tuple(figures.ratio(mean.value) for mean in means)
 
 
 def beside_ratios(library, *letters):
-    ratios = data.study(BESIDE).ratios(library, "half-edge", [RELATIONS[pair] for pair in letters])
+    ratios = data.study(beside.DATA).ratios(library, "half-edge", [RELATIONS[pair] for pair in letters])
     return tuple(figures.ratio(ratio) for ratio in ratios)
 
 
@@ -348,7 +340,7 @@ def opensubdiv():
 
 @page.says("To build a mesh, the libraries take {} times ({}) to {} times ({}) the time of half-edge")
 def builds():
-    ratios = {name: data.study(BESIDE).ratios(name, "half-edge", ["build"])[0] for name in libraries()}
+    ratios = {name: beside.mean(name, ["build"]).value for name in beside.libraries()}
     low, high = min(ratios, key=ratios.get), max(ratios, key=ratios.get)
     return figures.ratio(ratios[low], math.floor), low, figures.ratio(ratios[high], math.ceil), high
 
@@ -382,6 +374,10 @@ def all_workloads():
     return figures.word(len(workload_table.NAMES))
 
 
+for program, kind in advice.ROWS.items():
+    page.row(f"| {program} | {{}} | {{}} |", advice.Kind.described, kind, section="### The workloads of the advice")
+
+
 # The list of reports.
 
 
@@ -395,7 +391,7 @@ def editing_commit():
     "beside were measured at commit {} |"
 )
 def earlier_commit():
-    return figures.names(sorted({data.commit(path) for path in (ORDERS, BESIDE, *GROWTH.values())}))
+    return figures.names(sorted({data.commit(path) for path in (ORDERS, beside.DATA, *GROWTH.values())}))
 
 
 # Repeatability.
@@ -409,6 +405,13 @@ def repeated():
 @page.says("Of the 95 % intervals of ratios, {} contain the median of the other studies; of those of times, {} do.")
 def coverage():
     return repeatability.coverage("ratios"), repeatability.coverage("times")
+
+
+@page.says("In {} studies of two operations, during which the machine became faster, {} of the intervals of ratios and {} of those of "
+           "times contain the median of the other studies.")
+def coverage_of_named():
+    shares = [repeatability.coverage(kind, repeatability.NAMED) for kind in ("ratios", "times")]
+    return repeatability.runs(repeatability.NAMED)[0], *shares
 
 
 @page.says("The studies name a sole winner for {} operations each, and {} of these are the usual winner.")

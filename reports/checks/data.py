@@ -5,6 +5,7 @@ import json
 import math
 import pathlib
 import re
+import statistics
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCANNING = ("polygon-soup", "indexed-face-set")
@@ -66,6 +67,27 @@ def finding(path, kind):
 
 def environment(path):
     return document(path)["runs"][0]["environment"]
+
+
+# The line about the machine and the launches in a report that an example of sixfold-report writes.
+INTRODUCTION = (
+    "``` {}; {} cores; {} {}; {}, {} {}; Sixfold {} ({}); processor time of the thread; freed pages kept ({}); one thread. The "
+    "times are medians of {} launches. A launch is a process of its own{}. From launch to launch, a time varies by {} (the standard deviation divided by the mean; median "
+    "over all times)."
+)
+
+
+def introduction(path):
+    """Returns the values of `INTRODUCTION`."""
+    read = document(path)
+    e = read["environment"]
+    spreads = [statistics.stdev(row["cpu_ns"]) / statistics.fmean(row["cpu_ns"]) for row in read["results"] if len(row["cpu_ns"]) > 1]
+    compiler = e["rustc"].split(" (")[0], e["profile"], e["rustflags"]
+    program = e["sixfold"], e["commit"], e["heap"]["allocator"]
+    once = " that runs every line of the tables once"
+    rounds = f"; its time is the median of {read['rounds']} rounds, each of which runs every line of the tables once"
+    launches = str(read["launches"]), once if read["rounds"] == 1 else rounds, f"{100 * statistics.median(spreads):.1f} %"
+    return e["cpu_model"], str(e["cores"]), e["os"], e["kernel"], *compiler, *program, *launches
 
 
 def commit(path):

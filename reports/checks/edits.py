@@ -71,7 +71,7 @@ def pass_cell(what, backend):
     times = points(what, backend)
     slope = exponent([(faces, faces * ns) for faces, ns in times if faces > 10_000])
     shown = "–" if slope is None else f"{slope:.2f}"
-    return f"{time_text(times[0][1])} – {time_text(times[-1][1])}, {shown}"
+    return f"{time_text(times[0][1])} to {time_text(times[-1][1])}, {shown}"
 
 
 def time_text(ns):
@@ -97,11 +97,9 @@ def columns():
     data.require(found == {*EDITS, *PASSES}, f"{DATA} has the edits {sorted(found)}")
 
 
-@page.says("``` {}, {} cores, load {} at the start; {} {} ; one thread, processor time of the thread, medians of {} rounds")
-def machine():
-    found, rounds = data.document(DATA)["environment"], data.document(DATA)["rounds"]
-    load = f"{found['load_average']:.1f}"
-    return found["cpu_model"], str(found["cores"]), load, found["rustc"], found["profile"], str(rounds)
+@page.says(data.INTRODUCTION)
+def introduction():
+    return data.introduction(DATA)
 
 
 @page.says("The meshes are tori of {} to {} triangles.")

@@ -12,6 +12,9 @@ page = Claims(
         with two hardware threads
         Two named operations
         To find 10 % in a minute
+        could have changed by 10 % unnoticed
+        So one study predicts
+        the exit code says so (3)
     """,
 )
 
@@ -85,7 +88,7 @@ def compared():
     return alarms()
 
 
-@page.says("Of times that were made 10 % longer, it finds {}.")
+@page.says("Of times that were made 10 % longer, it finds {}: in a study")
 def planted():
     return found(ALL)
 
@@ -101,7 +104,7 @@ def varied_named():
 
 
 @page.says(
-    "So the studies tell less about each other: {} of the intervals of ratios contain the median of the other studies, and {} of "
+    "So one study predicts the others less well: {} of the intervals of ratios contain the median of the other studies, and {} of "
     "those of times."
 )
 def covered_named():

@@ -47,12 +47,9 @@ table("catmull-clark", without=["corner-table"])
 table("loop", without=[])
 
 
-@page.says("``` {}, {} cores, load {} at the start; {} {} {}; one thread, processor time of the thread, medians of {} rounds")
-def machine():
-    found, rounds = data.document(DATA)["environment"], data.document(DATA)["rounds"]
-    load = f"{found['load_average']:.1f}"
-    compiler = found["rustc"], found["profile"], found["rustflags"]
-    return found["cpu_model"], str(found["cores"]), load, *compiler, str(rounds)
+@page.says(data.INTRODUCTION)
+def introduction():
+    return data.introduction(DATA)
 
 
 @page.says("The control mesh is a geodesic sphere of {} triangles.")

@@ -29,7 +29,8 @@ def cheapest_row(name):
 def fastest(workload):
     """Returns the fastest backends with their ratios. The best and those tied with it are bold."""
     leaders = workload.leaders()
-    shown = sorted(workload.rows, key=workload.ns)[: max(SHOWN, len(leaders))]
+    ordered = sorted(workload.rows, key=workload.ns)
+    shown = [backend for place, backend in enumerate(ordered) if place < SHOWN or backend in leaders]
     if not leaders:
         return "no winner: " + ", ".join(with_ratio(workload, backend) for backend in shown)
     bold = lambda backend: f"**{with_ratio(workload, backend)}**" if backend in leaders else with_ratio(workload, backend)

@@ -60,18 +60,13 @@
 //!
 //! # What limits the speed of the sweeps
 //!
-//! In a walk around a vertex, each step waits for the row that the previous step read. A step
-//! consists of a load and the computation of `prev`: a multiplication for `c % 3`, a comparison and
-//! a selection. A step takes about ten cycles if the tables are in the first-level cache. If the
-//! vertices are visited in order, the time of the steps limits the speed of the queries VV, VE, VF
-//! and EE. Smoothing took 18 ns per vertex of a mesh with 2,562 vertices, and 27 ns per vertex of a
-//! mesh with 40,962 vertices (icospheres, one core of a shared AMD EPYC). If the vertices are
-//! visited in random order, each step waits for the cache or the memory. Smoothing in random order
-//! takes 58 ns per vertex in a mesh of 82,000 triangles. In a mesh of 1.3 million triangles,
-//! smoothing in random order takes 390 ns per vertex, which is the time of one memory access per
-//! neighbour. The queries FV, FE and FF read three consecutive rows, so most of the time is the
-//! caller's work with the results. The query EF and the list of edges take 1.5 ns per edge, most of
-//! which is the caller's work.
+//! In a walk around a vertex, each step waits for the row that the previous step read, and computes
+//! `prev`: a multiplication for `c % 3`, a comparison and a selection. If the vertices are visited in
+//! order, these steps limit the speed of the queries VV, VE, VF and EE. If the vertices of a large
+//! mesh are visited in random order, each step waits for the memory: one access per neighbour. The
+//! queries FV, FE and FF read three consecutive rows, and EF and the list of edges one row per edge,
+//! so most of their time is the caller's work with the results. `reports/growth` has the times per
+//! element for each size of the mesh, in both orders.
 //!
 //! # Examples
 //!

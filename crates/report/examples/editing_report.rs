@@ -2,9 +2,9 @@
 //!
 //! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [LAUNCHES | --draw]`
 //!
-//! `--draw` only draws the figure again, from the data in the folder.
+//! `--draw` only writes the text and the figure again, from the data in the folder.
 //!
-//! Every launch runs each edit and each workload on each structure and mesh, three times. An edit is done at
+//! Every launch runs each edit and each workload on each structure and mesh, once. An edit is done at
 //! many places of a fresh copy. The tables show medians of thread-CPU time over the launches.
 
 mod common;
@@ -15,16 +15,17 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{ROUNDS, Task, median};
+use common::{Data, Row, Task, median};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
-use sixfold_results::Run;
 use sixfold_study::{Backend, EditPass, Editor, MachineClock, Series, SingleEdit};
 
 /// Side lengths of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
+
+/// Number of rounds of a launch. A round takes minutes.
+const ROUNDS: usize = 1;
 
 /// Name of the file with all samples.
 const DATA: &str = "editing.json";
@@ -53,27 +54,14 @@ type Line = (&'static str, &'static str);
 type Samples = BTreeMap<(Line, usize), Vec<f64>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (folder, launches) = match common::task()? {
-        Task::Launch => return launch(),
-        Task::Draw(folder) => return figure(&folder),
-        Task::Measure(folder, launches) => (folder, launches),
-    };
-    let run = common::start();
-    let mut rows: BTreeMap<_, Row> = BTreeMap::new();
-    for row in common::launches::<Row>(launches)?.into_iter().flatten() {
-        let key = (row.what.clone(), row.backend.clone(), row.faces);
-        let times = row.cpu_ns.clone();
-        rows.entry(key)
-            .and_modify(|row| row.cpu_ns.extend(times))
-            .or_insert(row);
+    match common::task()? {
+        Task::Launch => launch(),
+        Task::Draw(folder) => draw(&folder),
+        Task::Measure(folder, launches) => {
+            Data::<Times>::measure(launches, ROUNDS)?.write(&folder.join(DATA))?;
+            draw(&folder)
+        }
     }
-    let rows: Vec<Row> = rows.into_values().collect();
-    fs::create_dir_all(&folder)?;
-    fs::write(folder.join("README.md"), text(&run, &rows)?)?;
-    let data = json!({"environment": run.environment, "start": run.start, "launches": launches, "rounds": ROUNDS, "results": rows});
-    let data = serde_json::to_string_pretty(&data)? + "\n";
-    fs::write(folder.join(DATA), data)?;
-    figure(&folder)
 }
 
 /// Measures everything in this process, and writes the rows to standard output.
@@ -83,13 +71,13 @@ fn launch() -> Result<(), Box<dyn Error>> {
     for side in SIDES {
         measure(&shapes::triangle_torus(side, side)?, &mut samples)?;
     }
-    let rows = samples.iter().map(|(&((what, backend), faces), ns)| Row {
+    let rows = samples.iter().map(|(&((what, backend), faces), ns)| Times {
         what: what.into(),
         backend: backend.into(),
         faces,
         cpu_ns: vec![median(ns)],
     });
-    let rows: Vec<Row> = rows.collect();
+    let rows: Vec<Times> = rows.collect();
     Ok(serde_json::to_writer(std::io::stdout(), &rows)?)
 }
 
@@ -145,7 +133,7 @@ fn measure(polygons: &PolygonMesh, samples: &mut Samples) -> Result<(), Box<dyn 
 }
 
 /// Returns the numbers of faces and the times of an edit or a workload on a structure, sorted by the number of faces.
-fn points(rows: &[Row], what: &str, backend: &str) -> Vec<(f64, f64)> {
+fn points(rows: &[Times], what: &str, backend: &str) -> Vec<(f64, f64)> {
     let sizes = rows
         .iter()
         .filter(|row| (&*row.what, &*row.backend) == (what, backend));
@@ -177,21 +165,17 @@ fn time_text(ns: f64) -> String {
     }
 }
 
-fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
+fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of edits on each structure, as the mesh grows\n\n");
-    text += &common::introduction(
-        run,
-        "editing_report",
-        "reports/editing",
-        rows.iter().map(|row| &row.cpu_ns[..]),
-    );
+    text += &data.introduction("editing_report", "reports/editing");
+    let rows = &data.results;
     writeln!(
         text,
         " The meshes are tori of 1,058 to 1,036,800 triangles. A place is a face with its edges and vertices. Each edit is done at up to {PLACES} places of a new copy of the mesh ({PLACES_SCANNED} places if the structure scans all faces). The places are spread over the mesh, in no particular order. One untimed edit comes before the timed edits, because the first edit reallocates full tables. Every edit checks whether it is legal. No edit writes a log of its changes.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
     )?;
     writeln!(
         text,
-        "\n## One edit\n\nEach cell has the time of one edit on a mesh of 16,200 faces, and two exponents of growth: from 1,058 to 16,200 faces (the structures fit into the cache), and from 16,200 to 1,036,800 faces (larger than the cache). The time of an edit is nearly proportional to the number of faces to the power of the exponent. An exponent of about 0 means that the time is constant. An exponent of about 1 means that the edit scans the whole mesh.\n"
+        "\n## One edit\n\nEach cell has the time of one edit on a mesh of 16,200 faces, and two exponents of growth: from 1,058 to 16,200 faces (the structures fit into the cache), and from 16,200 to 1,036,800 faces (larger than the cache). The time of an edit is nearly proportional to the number of faces to the power of the exponent. An exponent of about 0 means that the time is constant. An exponent of about 1 means that the edit scans the whole mesh. The sign – means that the structure does not have the edit.\n"
     )?;
     table(&mut text, rows, Edit::ALL.map(Edit::name), |points| {
         let at = points
@@ -216,7 +200,7 @@ fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
     })?;
     writeln!(
         text,
-        "\n## Whole workloads\n\nEach cell has two times and an exponent. The two times are for 1,058 faces and for the largest mesh, per face of the mesh (`flip_all`: per edge to be flipped). The exponent is the exponent of growth of the total time, for meshes of 16,200 faces or more.\n"
+        "\n## Whole workloads\n\nEach cell has two times and an exponent. The two times are for 1,058 faces and for the largest mesh, per face of the mesh (`flip_all`: per edge to be flipped). The exponent is the exponent of growth of the total time, for meshes of 16,200 faces or more; – where fewer were measured.\n"
     )?;
     table(
         &mut text,
@@ -231,7 +215,7 @@ fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
                 .collect();
             let slope = exponent(&large).map_or("–".into(), |e| format!("{e:.2}"));
             Some(format!(
-                "{} – {}, {slope}",
+                "{} to {}, {slope}",
                 time_text(first.1),
                 time_text(last.1)
             ))
@@ -245,7 +229,7 @@ fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
 /// Writes a table with a row for each of `what` and a column for each structure.
 fn table<const N: usize>(
     text: &mut String,
-    rows: &[Row],
+    rows: &[Times],
     what: [&'static str; N],
     cell: impl Fn(&[(f64, f64)]) -> Option<String>,
 ) -> std::fmt::Result {
@@ -268,24 +252,32 @@ fn table<const N: usize>(
     Ok(())
 }
 
-/// The part of the data that the figure shows.
-#[derive(Deserialize)]
-struct Data {
-    results: Vec<Row>,
-}
-
 /// The times of an edit on a structure and a mesh, one for each launch.
 #[derive(Deserialize, Serialize)]
-struct Row {
+struct Times {
     what: String,
     backend: String,
     faces: usize,
     cpu_ns: Vec<f64>,
 }
 
-/// Draws the time per edit over the number of faces, from the data in `folder`.
-fn figure(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let data: Data = serde_json::from_slice(&fs::read(folder.join(DATA))?)?;
+impl Row for Times {
+    type Key = (String, String, usize);
+    fn key(&self) -> Self::Key {
+        (self.what.clone(), self.backend.clone(), self.faces)
+    }
+    fn times(&self) -> &[f64] {
+        &self.cpu_ns
+    }
+    fn add_times(&mut self, times: &[f64]) {
+        self.cpu_ns.extend(times);
+    }
+}
+
+/// Writes the text, and draws the time per edit over the number of faces, from the data in `folder`.
+fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let data: Data<Times> = Data::read(&folder.join(DATA))?;
+    fs::write(folder.join("README.md"), text(&data)?)?;
     let shown = [
         Edit::FlipEdge,
         Edit::CollapseEdge,

@@ -4,8 +4,8 @@
 //! cargo run --release -p sixfold-report --example subdivision_report -- reports/subdivision
 //! ```
 //!
-//! The optional last argument is the number of launches (5 without it), or `--draw`: this only draws the figure
-//! again, from the data in the folder.
+//! The optional last argument is the number of launches (5 without it), or `--draw`: this only writes the
+//! text and the figure again, from the data in the folder.
 //!
 //! Every launch runs each scheme, method and structure at each level three times, on one thread. The table
 //! and the figure show medians of thread-CPU time over the launches.
@@ -18,13 +18,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{ROUNDS, Task};
+use common::{Data, Row, Task};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_report::{Panel, panels};
-use sixfold_results::Run;
 use sixfold_study::{Backend, Clock, MachineClock, Refiner, SubdivisionJob, Way};
 
 /// The schemes of the report. Both accept triangles.
@@ -32,6 +30,9 @@ const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
 
 /// Name of the file with all samples.
 const DATA: &str = "subdivision.json";
+
+/// Number of rounds of a launch.
+const ROUNDS: usize = 3;
 
 /// Largest level.
 const LEVELS: u32 = 4;
@@ -55,32 +56,14 @@ at every level.
 type Line = (&'static str, &'static str, &'static str);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (folder, launches) = match common::task()? {
-        Task::Launch => return launch(),
-        Task::Draw(folder) => return figure(&folder),
-        Task::Measure(folder, launches) => (folder, launches),
-    };
-    let run = common::start();
-    let mut rows: BTreeMap<_, Row> = BTreeMap::new();
-    for row in common::launches::<Row>(launches)?.into_iter().flatten() {
-        let key = (
-            row.scheme.clone(),
-            row.way.clone(),
-            row.backend.clone(),
-            row.level,
-        );
-        let times = row.cpu_ns.clone();
-        rows.entry(key)
-            .and_modify(|row| row.cpu_ns.extend(times))
-            .or_insert(row);
+    match common::task()? {
+        Task::Launch => launch(),
+        Task::Draw(folder) => draw(&folder),
+        Task::Measure(folder, launches) => {
+            Data::<Times>::measure(launches, ROUNDS)?.write(&folder.join(DATA))?;
+            draw(&folder)
+        }
     }
-    let rows: Vec<Row> = rows.into_values().collect();
-    fs::create_dir_all(&folder)?;
-    fs::write(folder.join("README.md"), text(&run, &rows)?)?;
-    let data = json!({"environment": run.environment, "start": run.start, "launches": launches, "rounds": ROUNDS, "results": rows});
-    let data = serde_json::to_string_pretty(&data)? + "\n";
-    fs::write(folder.join(DATA), data)?;
-    figure(&folder)
 }
 
 /// Measures everything in this process, and writes the rows to standard output.
@@ -91,7 +74,7 @@ fn launch() -> Result<(), Box<dyn Error>> {
     let samples = pool.install(|| measure(&polygons))?;
     let rows = samples
         .into_iter()
-        .map(|(((scheme, way, backend), level), sample)| Row {
+        .map(|(((scheme, way, backend), level), sample)| Times {
             scheme: scheme.into(),
             way: way.into(),
             backend: backend.into(),
@@ -99,7 +82,7 @@ fn launch() -> Result<(), Box<dyn Error>> {
             faces: sample.faces,
             cpu_ns: vec![common::median(&sample.ns)],
         });
-    let rows: Vec<Row> = rows.collect();
+    let rows: Vec<Times> = rows.collect();
     Ok(serde_json::to_writer(std::io::stdout(), &rows)?)
 }
 
@@ -150,14 +133,10 @@ fn measure(polygons: &PolygonMesh) -> Result<Samples, SubdivisionError> {
     Ok(samples)
 }
 
-fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
+fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
-    text += &common::introduction(
-        run,
-        "subdivision_report",
-        "reports/subdivision",
-        rows.iter().map(|row| &row.cpu_ns[..]),
-    );
+    text += &data.introduction("subdivision_report", "reports/subdivision");
+    let rows = &data.results;
     text += " The control mesh is a geodesic sphere of 5,120 triangles. A time is for all levels up to the level in the head of the column, in nanoseconds per face of this level.\n\n";
     text += "`gather` queries the neighbourhood of each new point, and `scatter` makes one pass over the faces. After `gather` and `scatter`, the structure is built again from polygons. `native_fresh` and `native` split the structure's own tables: `native_fresh` writes the result into newly allocated tables, and `native` writes the result into the tables of the previous run. The sign – means that the level was not measured: the previous level took more than 0.4 s, or the structure cannot hold quads.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
@@ -176,7 +155,7 @@ fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
                     rows.iter()
                         .find(|row| (row.line(), row.level) == (line, level))
                 };
-                let at = |level| row(level).map(Row::ns_per_face);
+                let at = |level| row(level).map(Times::ns_per_face);
                 if at(1).is_none() {
                     continue;
                 }
@@ -196,15 +175,9 @@ fn text(run: &Run, rows: &[Row]) -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// The part of the data that the figure shows.
-#[derive(Deserialize)]
-struct Data {
-    results: Vec<Row>,
-}
-
 /// The times of a scheme, a method and a structure at one level, one for each launch.
 #[derive(Deserialize, Serialize)]
-struct Row {
+struct Times {
     scheme: String,
     way: String,
     backend: String,
@@ -213,7 +186,7 @@ struct Row {
     cpu_ns: Vec<f64>,
 }
 
-impl Row {
+impl Times {
     fn line(&self) -> (&str, &str, &str) {
         (&self.scheme, &self.way, &self.backend)
     }
@@ -224,9 +197,29 @@ impl Row {
     }
 }
 
-/// Draws the time per new face over the number of faces, from the data in `folder`.
-fn figure(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let data: Data = serde_json::from_slice(&fs::read(folder.join(DATA))?)?;
+impl Row for Times {
+    type Key = (String, String, String, u32);
+    fn key(&self) -> Self::Key {
+        let Self {
+            scheme,
+            way,
+            backend,
+            ..
+        } = self;
+        (scheme.clone(), way.clone(), backend.clone(), self.level)
+    }
+    fn times(&self) -> &[f64] {
+        &self.cpu_ns
+    }
+    fn add_times(&mut self, times: &[f64]) {
+        self.cpu_ns.extend(times);
+    }
+}
+
+/// Writes the text, and draws the time per new face over the number of faces, from the data in `folder`.
+fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let data: Data<Times> = Data::read(&folder.join(DATA))?;
+    fs::write(folder.join("README.md"), text(&data)?)?;
     let ways = [Way::Gather, Way::Scatter, Way::Native];
     let line = |scheme: Scheme, way: Way, backend: &'static str| {
         let line = (scheme.name(), way.name(), backend);

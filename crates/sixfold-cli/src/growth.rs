@@ -38,6 +38,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         },
         shape: arguments.shape.clone(),
         order: arguments.order,
+        order_seed: arguments.seed,
         from: arguments.from,
         to: arguments.to,
         steps: arguments.steps,

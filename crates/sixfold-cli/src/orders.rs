@@ -127,6 +127,10 @@ fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> Str
     header.extend(orders);
     header.push(right("worst"));
     let mut table: Table = styled(header, signs.is_bold());
+    // With this padding, names and times of a million faces fit into 80 columns.
+    for column in table.column_iter_mut().skip(1) {
+        column.set_padding((1, 0));
+    }
     for backend_rows in rows.chunk_by(|a, b| a.backend == b.backend) {
         let backend = &backend_rows[0].backend;
         let each: Vec<f64> = backend_rows

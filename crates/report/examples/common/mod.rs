@@ -3,13 +3,17 @@
 //! A program measures in launches: it starts itself several times with `--launch`, and each process measures everything
 //! and writes its rows as JSON. What changes from process to process, such as addresses, is therefore part of the variation.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::error::Error;
+use std::fs;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde::de::DeserializeOwned;
-use sixfold_results::{Policy, Run, RunSettings};
+use serde::{Deserialize, Serialize};
+use sixfold_results::{Environment, Policy, Run, RunSettings, Start};
 use sixfold_study::HeapGuard;
 
 /// Describes the machine, and keeps freed memory pages from now on.
@@ -20,16 +24,13 @@ pub(crate) fn start() -> Run {
     run
 }
 
-/// Number of rounds of a launch, each of which runs everything once. The time of a launch is their median.
-pub(crate) const ROUNDS: usize = 3;
-
 /// What the program is asked to do, from its arguments.
 pub(crate) enum Task {
     /// To measure in this number of launches, and to write the report into the folder.
     Measure(PathBuf, usize),
     /// To measure once, and to write the rows to standard output.
     Launch,
-    /// To draw the figure again, from the data in the folder.
+    /// To write the text and the figure again, from the data in the folder.
     Draw(PathBuf),
 }
 
@@ -45,52 +46,95 @@ pub(crate) fn task() -> Result<Task, Box<dyn Error>> {
     })
 }
 
-/// Starts this program `count` times, one after the other, and returns the rows of each launch.
-pub(crate) fn launches<Row: DeserializeOwned>(
-    count: usize,
-) -> Result<Vec<Vec<Row>>, Box<dyn Error>> {
-    let mut launches = Vec::new();
-    for launch in 1..=count {
-        let mut command = Command::new(std::env::current_exe()?);
-        let output = command.arg("--launch").stderr(Stdio::inherit()).output()?;
-        if !output.status.success() {
-            return Err(format!("launch {launch} failed: {}", output.status).into());
-        }
-        launches.push(serde_json::from_slice(&output.stdout)?);
-        eprintln!("launch {launch} of {count} measured");
-    }
-    Ok(launches)
+/// A row of a report: what was measured, and one time for each launch.
+pub(crate) trait Row: DeserializeOwned + Serialize {
+    /// What was measured.
+    type Key: Ord;
+    fn key(&self) -> Self::Key;
+    fn times(&self) -> &[f64];
+    fn add_times(&mut self, times: &[f64]);
 }
 
-/// Returns the command that makes the report, as a code block, and a description of the machine. `times` has the times
-/// of the launches for each row.
-pub(crate) fn introduction<'a>(
-    run: &Run,
-    example: &str,
-    folder: &str,
-    times: impl Iterator<Item = &'a [f64]>,
-) -> String {
-    let flags = match &*run.environment.rustflags {
-        "" => String::new(),
-        flags => format!("RUSTFLAGS=\"{flags}\" "),
-    };
-    let times: Vec<&[f64]> = times.collect();
-    let launches = times.iter().map(|row| row.len()).max().unwrap_or(0);
-    let spreads: Vec<f64> = times.iter().filter_map(|row| spread(row)).collect();
-    let varies = match spreads[..] {
-        [] => String::new(),
-        _ => format!(
-            " From launch to launch, a time varies by {:.1} % (the standard deviation divided by the mean; median over all times).",
-            100.0 * median(&spreads)
-        ),
-    };
-    let machine = sixfold_report::machine(&run.environment);
-    format!(
-        "```sh\n{flags}cargo run --release -p sixfold-report --example {example} -- {folder} {launches}\n```\n\n\
-         {machine}; one thread.\n\n\
-         The times are medians of {launches} launches. A launch is a process of its own, and its time is the median of \
-         {ROUNDS} rounds; a round runs every line of the tables once.{varies}"
-    )
+/// The data of a report.
+#[derive(Deserialize, Serialize)]
+pub(crate) struct Data<R> {
+    environment: Environment,
+    start: Start,
+    launches: usize,
+    rounds: usize,
+    pub(crate) results: Vec<R>,
+}
+
+impl<R: Row> Data<R> {
+    /// Starts this program `launches` times, one after the other, and collects the times of equal rows. A launch has
+    /// this number of `rounds`, each of which runs everything once; its time is their median.
+    pub(crate) fn measure(launches: usize, rounds: usize) -> Result<Self, Box<dyn Error>> {
+        let run = start();
+        let mut rows: BTreeMap<R::Key, R> = BTreeMap::new();
+        for launch in 1..=launches {
+            let mut command = Command::new(std::env::current_exe()?);
+            let output = command.arg("--launch").stderr(Stdio::inherit()).output()?;
+            if !output.status.success() {
+                return Err(format!("launch {launch} failed: {}", output.status).into());
+            }
+            for row in serde_json::from_slice::<Vec<R>>(&output.stdout)? {
+                match rows.entry(row.key()) {
+                    Entry::Vacant(entry) => _ = entry.insert(row),
+                    Entry::Occupied(mut entry) => entry.get_mut().add_times(row.times()),
+                }
+            }
+            eprintln!("launch {launch} of {launches} measured");
+        }
+        Ok(Self {
+            environment: run.environment,
+            start: run.start,
+            launches,
+            rounds,
+            results: rows.into_values().collect(),
+        })
+    }
+
+    pub(crate) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
+        Ok(serde_json::from_slice(&fs::read(path)?)?)
+    }
+
+    pub(crate) fn write(&self, path: &Path) -> Result<(), Box<dyn Error>> {
+        fs::create_dir_all(path.parent().unwrap_or(path))?;
+        Ok(fs::write(path, serde_json::to_string_pretty(self)? + "\n")?)
+    }
+
+    /// Returns the command that makes the report, as a code block, and a description of the machine.
+    pub(crate) fn introduction(&self, example: &str, folder: &str) -> String {
+        let Self { launches, .. } = self;
+        let flags = match &*self.environment.rustflags {
+            "" => String::new(),
+            flags => format!("RUSTFLAGS=\"{flags}\" "),
+        };
+        let spreads: Vec<f64> = self
+            .results
+            .iter()
+            .filter_map(|row| spread(row.times()))
+            .collect();
+        let varies = match spreads[..] {
+            [] => String::new(),
+            _ => format!(
+                " From launch to launch, a time varies by {:.1} % (the standard deviation divided by the mean; median over all times).",
+                100.0 * median(&spreads)
+            ),
+        };
+        let machine = sixfold_report::machine(&self.environment);
+        let rounds = match self.rounds {
+            1 => " that runs every line of the tables once".to_owned(),
+            rounds => format!(
+                "; its time is the median of {rounds} rounds, each of which runs every line of the tables once"
+            ),
+        };
+        format!(
+            "```sh\n{flags}cargo run --release -p sixfold-report --example {example} -- {folder} {launches}\n```\n\n\
+             {machine}; one thread.\n\n\
+             The times are medians of {launches} launches. A launch is a process of its own{rounds}.{varies}"
+        )
+    }
 }
 
 /// Returns the standard deviation divided by the mean; `None` for fewer than two times.

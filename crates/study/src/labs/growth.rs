@@ -101,7 +101,7 @@ pub(crate) fn growth_on(
         let start = clock.now().wall_ns;
         let built = Cell::new(0.0);
         let made = plan.shape.make(faces)?;
-        let mesh = settings.order.apply(&made, settings.study.seed);
+        let mesh = settings.order.apply(&made, settings.order_seed);
         drop(made);
         let mesh = StudyMesh::new(settings.shape.clone(), mesh);
         let range = time.range(step);

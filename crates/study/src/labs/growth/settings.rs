@@ -33,6 +33,9 @@ pub struct GrowthSettings {
     pub shape: String,
     /// Order of the elements in memory.
     pub order: Order,
+    /// Seed of the random order. All launches of a measurement have the same, because their meshes must be
+    /// the same, and another seed in `study`.
+    pub order_seed: u64,
     /// Approximate number of faces of the smallest size.
     pub from: usize,
     /// Approximate number of faces of the largest size.
@@ -50,6 +53,7 @@ impl Default for GrowthSettings {
             },
             shape: SCALABLE_SHAPES[0].name.into(),
             order: Order::Given,
+            order_seed: 1,
             from: 1000,
             to: 1_000_000,
             steps: 13,

@@ -85,7 +85,7 @@ pub(crate) fn rule(choice: &Choice, ranking: &[Ranked]) -> Option<String> {
         false => "has the fewest bytes",
     };
     Some(format!(
-        "Choose {}: there is no clear difference above 5 % between {}, and {} \
+        "Choose {}: none of {} is clearly more than 5 % slower than the fastest, and {} \
          {reason} ({per_vertex:.1} per vertex).",
         choice.backend,
         list(std::iter::once(&choice.backend).chain(&choice.equally_fast)),
