@@ -381,17 +381,19 @@ for program, kind in advice.ROWS.items():
 # The list of reports.
 
 
-@page.says("every edit on every structure, from a thousand to a million faces; measured at commit {} |")
-def editing_commit():
-    return data.document("reports/editing/editing.json")["environment"]["commit"][:7]
+EXAMPLES = ("reports/editing/editing.json", "reports/subdivision/subdivision.json")
+NEIGHBOURS = tuple(f"reports/neighbours/{mesh}-{points}.json" for mesh in ("built-in", "sphere") for points in ("near", "box"))
 
 
 @page.says(
-    "the libraries OpenMesh, CGAL, OpenSubdiv, lox, alum, parry3d and tri-mesh, compared with Sixfold; orders, growth and "
-    "beside were measured at commit {} |"
+    "The first five of the list, and those on subdivision, editing and neighbours, were measured on the same machine, at commit {} "
+    "(workloads: {})."
 )
-def earlier_commit():
-    return figures.names(sorted({data.commit(path) for path in (ORDERS, beside.DATA, *GROWTH.values())}))
+def measured():
+    found = [*map(data.environment, (STUDY, ORDERS, beside.DATA, *GROWTH.values(), *NEIGHBOURS))]
+    found += [data.document(path)["environment"] for path in EXAMPLES]
+    data.require(len({each["cpu_model"] for each in [*found, *data.workload_environments()]}) == 1, "other machines")
+    return figures.names(sorted({each["commit"][:7] for each in found})), workload_commit()
 
 
 # Repeatability.

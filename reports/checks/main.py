@@ -5,10 +5,10 @@ import pathlib
 import unittest
 
 from checks import advice, claims, commits, data, text
-from checks import chapters, conclusions, edits, front_page, guide, repeatability, shorter, subdivision, validity
+from checks import chapters, conclusions, edits, front_page, guide, neighbours, repeatability, shorter, subdivision, validity
 
 TEXTS = [*conclusions.TEXTS, *edits.TEXTS, *subdivision.TEXTS, *repeatability.TEXTS, *validity.TEXTS, *guide.TEXTS]
-TEXTS += [*shorter.TEXTS, *front_page.TEXTS, *chapters.TEXTS]
+TEXTS += [*neighbours.TEXTS, *shorter.TEXTS, *front_page.TEXTS, *chapters.TEXTS]
 
 
 class Result:

@@ -11,11 +11,6 @@ HEAP = """
     between two copies of one structure
     in two programs
 """
-NEIGHBOURS = """
-    writes four results
-    a geodesic sphere of 499,280 triangles
-    the eight nearest vertices
-"""
 CLUSTER = """
     Slurm array of eight jobs
     between two machines
@@ -33,7 +28,6 @@ ALGORITHMS = """
 TEXTS = [
     Claims("reports/criterion/README.md", CRITERION),
     Claims("reports/heap/README.md", HEAP),
-    Claims("reports/neighbours/README.md", NEIGHBOURS),
     Claims("reports/cluster/README.md", CLUSTER),
     Claims("docs/algorithms.md", ALGORITHMS),
 ]
