@@ -35,7 +35,7 @@ page = Claims(
         these four structures
         On the four structures
         One untimed edit
-        the first exponents are about 0
+        the first exponents are near 0
         with exponents of about 1 on large meshes
     """,
 )
@@ -121,7 +121,7 @@ def smallest():
     return figures.count(min(row["faces"] for row in data.document(DATA)["results"]))
 
 
-@page.says("for meshes of {} faces or more.")
+@page.says("for meshes of {} faces or more; –")
 def large():
     return figures.count(min(row["faces"] for row in data.document(DATA)["results"] if row["faces"] > 10_000))
 
@@ -141,28 +141,30 @@ def require_between(found, low, high):
 
 
 @page.says("Half-edge, winged-edge, corner table and face-vertex store which elements are adjacent. On these four structures, "
-           "the time of an edit hardly depends on the size of the mesh while the structure fits into the cache: the first "
-           "exponents are about 0. The exceptions are `remove_isolated_vertices` and `compact`, which visit the whole mesh.")
+           "the time of an edit depends little on the size of the mesh while the structure fits into the cache: the first "
+           "exponents are near 0. The exceptions are `remove_isolated_vertices` and `compact`, which visit the whole mesh.")
 def constant():
-    require_between(all_exponents(set(EDITS) - set(WHOLE_MESH), LOCAL, False), -0.3, 0.3)
-    require_between(all_exponents(WHOLE_MESH, LOCAL, False), 0.6, 1.2)
+    require_between(all_exponents(set(EDITS) - set(WHOLE_MESH), LOCAL, False), -0.4, 0.4)
+    require_between(all_exponents(WHOLE_MESH, LOCAL, False), 0.6, 1.3)
 
 
-@page.says("For meshes larger than the cache, the exponents are larger, except for `add_vertex`, but stay far below 1.")
+@page.says("For meshes larger than the cache, most exponents are larger, but stay below 1.")
 def beyond():
-    found = all_exponents(set(EDITS) - set(WHOLE_MESH) - {"add_vertex"}, LOCAL, True)
-    require_between(found, 0.1, 0.6)
-    cached = all_exponents(set(EDITS) - set(WHOLE_MESH) - {"add_vertex"}, LOCAL, False)
-    data.require(all(found[key] > cached[key] for key in found), "an exponent is not larger for large meshes")
+    found, cached = (all_exponents(set(EDITS) - set(WHOLE_MESH), LOCAL, larger) for larger in (True, False))
+    require_between(found, 0, 0.8)
+    larger = sum(found[key] > cached[key] for key in found)
+    data.require(larger > 0.8 * len(found), f"only {larger} of {len(found)} exponents are larger for large meshes")
 
 
 @page.says(
     "On the indexed face set and the polygon soup, an edit that must find the faces at a vertex or an edge scans all faces, "
-    "with exponents of about 1 on large meshes. On the indexed face set, an edit of a given face does not scan."
+    "with exponents of about 1 on large meshes. On the indexed face set, an edit of a given face does not scan: on the largest mesh, "
+    "it takes a small part of the time of an edit that does."
 )
 def searching():
     require_between(all_exponents(SEARCHING, SCANNING, True), 0.9, 1.3)
-    require_between(all_exponents(OF_A_FACE, ["indexed-face-set"], True), 0, 0.8)
+    longest, scan = (of(points(what, "indexed-face-set")[-1][1] for what in edits) for of, edits in ((max, OF_A_FACE), (min, SEARCHING)))
+    data.require(longest < 0.05 * scan, f"an edit of a given face takes {longest} ns, one that scans {scan} ns")
 
 
 @page.says("their time per face grows less than the time per edge of `flip_all`.")

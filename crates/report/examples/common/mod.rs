@@ -106,10 +106,6 @@ impl<R: Row> Data<R> {
     /// Returns the command that makes the report, as a code block, and a description of the machine.
     pub(crate) fn introduction(&self, example: &str, folder: &str) -> String {
         let Self { launches, .. } = self;
-        let flags = match &*self.environment.rustflags {
-            "" => String::new(),
-            flags => format!("RUSTFLAGS=\"{flags}\" "),
-        };
         let spreads: Vec<f64> = self
             .results
             .iter()
@@ -130,7 +126,7 @@ impl<R: Row> Data<R> {
             ),
         };
         format!(
-            "```sh\n{flags}cargo run --release -p sixfold-report --example {example} -- {folder} {launches}\n```\n\n\
+            "```sh\ncargo run --release -p sixfold-report --example {example} -- {folder} {launches}\n```\n\n\
              {machine}; one thread.\n\n\
              The times are medians of {launches} launches. A launch is a process of its own{rounds}.{varies}"
         )
