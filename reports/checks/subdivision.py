@@ -82,14 +82,15 @@ def scatter():
             data.require(fastest == "indexed-face-set", f"{fastest} is faster for {scheme} at level {level}")
 
 
-@page.says("For half-edge, winged-edge and corner table, `native` is the fastest method at every level.")
+@page.says("For half-edge, winged-edge and corner table, both are faster than `gather` and `scatter` at every level.")
 def native():
     for scheme in SCHEMES:
         for backend in WALKING:
             found = {way: times(scheme, way, backend) for way in WAYS}
             for level in LEVELS if found["native"] else []:
-                fastest = min(found, key=lambda way: found[way][level])
-                data.require(fastest == "native", f"{fastest} is faster for {scheme} on {backend} at level {level}")
+                own = max(found[way][level] for way in ("native", "native_fresh"))
+                others = min(found[way][level] for way in ("gather", "scatter"))
+                data.require(own < others, f"another method is faster for {scheme} on {backend} at level {level}")
 
 
 TEXTS = [page]

@@ -47,9 +47,9 @@ const CONCLUSIONS: &str = "
 The method `gather` queries the relations EF (faces of an edge) and VV (neighbours of a vertex) for every new point. A
 polygon soup and an indexed face set must search all faces for the answers, so their time per new face grows with the
 size of the mesh. The method `scatter` avoids the searches, because `scatter` uses only relations that every structure
-stores. Both methods build the structure again. The indexed face set is the fastest structure with `scatter`. The method
-`native` does not build the structure again. For half-edge, winged-edge and corner table, `native` is the fastest method
-at every level.
+stores. Both methods build the structure again. The indexed face set is the fastest structure with `scatter`. The
+methods `native_fresh` and `native` do not build the structure again. For half-edge, winged-edge and corner table, both
+are faster than `gather` and `scatter` at every level.
 ";
 
 /// A scheme, a method and a structure.
