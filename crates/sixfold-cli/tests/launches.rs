@@ -571,10 +571,27 @@ fn orders_growth_and_neighbours_are_measured_in_launches() {
         fits.len() == 2 && fits[0]["all"]["exponent"].is_f64(),
         "{fits:?}"
     );
+    let command = ["neighbours", "grid.obj", "--indices", "grid,bvh"];
+    let effort = ["--rounds", "2", "--launches", "3", "--json", "near.json"];
+    run_ok(&sixfold, &[&command[..], &effort].concat());
+    let neighbours = document(&sixfold, "near.json");
+    let finding = &neighbours["findings"][0];
+    assert_eq!(counts(&finding["results"]), vec![3; 14]);
+    // The noise is that of all launches, and not that of the noisiest.
+    for row in finding["control"]["operations"].as_array().expect("noise") {
+        assert_eq!(row["launches"].as_array().map(Vec::len), Some(3));
+    }
     // The page shows them.
     run_ok(
         &sixfold,
-        &["report", "orders.json", "growth.json", "--to", "page"],
+        &[
+            "report",
+            "orders.json",
+            "growth.json",
+            "near.json",
+            "--to",
+            "page",
+        ],
     );
 }
 

@@ -7,7 +7,7 @@ use crate::figure::{Figure, Rows};
 use crate::finding::LabFinding;
 use crate::launches::LaunchRows;
 use crate::read::ReadError;
-use crate::rows::{MeshReport, ResultRow, Samples};
+use crate::rows::{Control, MeshReport, ResultRow, Samples};
 use crate::run::Run;
 use crate::timer::Timer;
 
@@ -33,9 +33,8 @@ pub struct NeighboursReport {
     pub results: Vec<ResultRow>,
     /// For each kind of query, which index takes the least time in total.
     pub cheapest: Vec<CheapestIndices>,
-    /// The largest difference of two measurements of the same index, as a ratio of times. `None` if
-    /// no index was measured twice.
-    pub noise: Option<f64>,
+    /// The difference between the two measurements of one index; `None` if no index was measured twice.
+    pub control: Option<Control>,
     /// Sentences that describe the results.
     pub sentences: Vec<String>,
     /// Sentences about possible faults of the measurement and their remedies.
@@ -78,7 +77,7 @@ impl NeighboursReport {
             results: &self.results,
             refusals: &[],
             samples: &self.samples,
-            control: None,
+            control: self.control.as_ref(),
         }
     }
 

@@ -187,17 +187,17 @@ pub(crate) fn neighbours_on(
         backends,
         cheapest: cheapest_indices(&results, &noise),
         results,
-        noise: control.map(|control| control.worst),
+        timer: bench.timer(measured.shortest_ns()),
+        control: measured.control,
         sentences: Vec::new(),
         samples,
         interrupted: measured.interrupted,
-        timer: bench.timer(measured.shortest_ns()),
     };
     report.sentences = sentences::sentences(&report);
     Ok(report)
 }
 
-/// Pools the searches on one mesh, measured in several launches. The noise is that of the noisiest launch.
+/// Pools the searches on one mesh, measured in several launches.
 pub(crate) fn pool_neighbours(mut launches: Vec<NeighboursReport>) -> NeighboursReport {
     if launches.len() == 1 {
         return launches.remove(0);
@@ -207,7 +207,6 @@ pub(crate) fn pool_neighbours(mut launches: Vec<NeighboursReport>) -> Neighbours
     let pooled = pool_rows(&rows, confidence, |row| row.operation.clone());
     let run = pool_runs(launches.iter().map(|launch| &launch.run));
     let timers = launches.iter().map(|launch| launch.timer);
-    let noises = launches.iter().filter_map(|launch| launch.noise);
     let first = &launches[0];
     let mut report = NeighboursReport {
         warnings: machine_warnings(&run, &pooled.samples.iter().collect::<Vec<_>>()),
@@ -215,7 +214,7 @@ pub(crate) fn pool_neighbours(mut launches: Vec<NeighboursReport>) -> Neighbours
         timer: pool_timers(timers).unwrap_or(first.timer),
         // The intervals of the launches decide.
         cheapest: cheapest_indices(&pooled.results, &|_| NO_DIFFERENCE),
-        noise: noises.max_by(f64::total_cmp),
+        control: pooled.control,
         interrupted: launches.iter().any(|launch| launch.interrupted),
         results: pooled.results,
         samples: pooled.samples,

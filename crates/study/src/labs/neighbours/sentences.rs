@@ -2,7 +2,7 @@
 
 use super::SpatialTask;
 use sixfold_results::numbers::{grouped, list, rounded};
-use sixfold_results::{Cheapest, NeighboursReport};
+use sixfold_results::{Cheapest, NeighboursReport, describe_noise};
 
 /// Returns the fastest indices of all tasks, then for each kind of query the index with the least
 /// total time, and the noise.
@@ -16,12 +16,8 @@ pub(super) fn sentences(report: &NeighboursReport) -> Vec<String> {
             ));
         }
     }
-    if let Some(noise) = report.noise {
-        sentences.push(format!(
-            "How sure: two measurements of one index differ by at most {:.1} %.",
-            100.0 * (noise - 1.0)
-        ));
-    }
+    let noise = report.control.as_ref().and_then(describe_noise);
+    sentences.extend(noise.map(|noise| format!("How sure: {noise}.")));
     sentences
 }
 
