@@ -2,7 +2,7 @@
 
 import math
 
-from checks import advice, beside, data, figures, repeatability, workload_table
+from checks import advice, beside, data, figures, neighbours, repeatability, workload_table
 from checks.claims import Claims
 from checks.data import BUILT_IN, ENOUGH, LARGE, LOCAL, QUADS, RELATIONS, SCANNING, STRUCTURES, WALKING
 
@@ -382,7 +382,6 @@ for program, kind in advice.ROWS.items():
 
 
 EXAMPLES = ("reports/editing/editing.json", "reports/subdivision/subdivision.json")
-NEIGHBOURS = tuple(f"reports/neighbours/{mesh}-{points}.json" for mesh in ("built-in", "sphere") for points in ("near", "box"))
 
 
 @page.says(
@@ -390,7 +389,7 @@ NEIGHBOURS = tuple(f"reports/neighbours/{mesh}-{points}.json" for mesh in ("buil
     "(workloads: {})."
 )
 def measured():
-    found = [*map(data.environment, (STUDY, ORDERS, beside.DATA, *GROWTH.values(), *NEIGHBOURS))]
+    found = [*map(data.environment, (STUDY, ORDERS, beside.DATA, *GROWTH.values(), *neighbours.DOCUMENTS))]
     found += [data.document(path)["environment"] for path in EXAMPLES]
     data.require(len({each["cpu_model"] for each in [*found, *data.workload_environments()]}) == 1, "other machines")
     return figures.names(sorted({each["commit"][:7] for each in found})), workload_commit()
