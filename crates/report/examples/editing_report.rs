@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{Data, Row, Task, median};
+use common::{Data, Row};
 use serde::{Deserialize, Serialize};
 use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
@@ -35,9 +35,6 @@ const PLACES: usize = 4096;
 /// Number of places of an edit that scans or that visits the whole mesh.
 const PLACES_SCANNED: usize = 12;
 
-/// Edits that visit the whole mesh on every structure.
-const WHOLE_MESH: [Edit; 2] = [Edit::RemoveIsolatedVertices, Edit::Compact];
-
 /// Minimum number of faces of all copies of a mesh together.
 const MIN_TOTAL_FACES: usize = 64_000;
 
@@ -50,38 +47,26 @@ const MAX_CACHED_FACES: usize = 20_000;
 /// Conclusions that hold on every machine.
 const CONCLUSIONS: &str = include_str!("common/editing.md");
 
-/// An edit or a workload, on a structure.
-type Line = (&'static str, &'static str);
-
-/// Times of the launches in nanoseconds per edit or element, by line and number of faces.
-type Samples = BTreeMap<(Line, usize), Vec<f64>>;
-
-fn main() -> Result<(), Box<dyn Error>> {
-    match common::task()? {
-        Task::Launch => launch(),
-        Task::Draw(folder) => draw(&folder),
-        Task::Measure(folder, launches) => {
-            Data::<Times>::measure(launches, ROUNDS)?.write(&folder.join(DATA))?;
-            draw(&folder)
-        }
-    }
+/// An edit or a workload on a structure, and the number of faces of the mesh.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+struct Line {
+    what: String,
+    backend: String,
+    faces: usize,
 }
 
-/// Measures everything in this process, and writes the rows to standard output.
-fn launch() -> Result<(), Box<dyn Error>> {
-    common::start();
-    let mut samples = Samples::new();
-    for side in SIDES {
-        measure(&shapes::triangle_torus(side, side)?, &mut samples)?;
-    }
-    let rows = samples.iter().map(|(&((what, backend), faces), ns)| Times {
-        what: what.into(),
-        backend: backend.into(),
-        faces,
-        cpu_ns: vec![median(ns)],
-    });
-    let rows: Vec<Times> = rows.collect();
-    Ok(serde_json::to_writer(std::io::stdout(), &rows)?)
+/// Times of the rounds in nanoseconds per edit or element.
+type Samples = BTreeMap<Line, Vec<f64>>;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let measure_all = || {
+        let mut samples = Samples::new();
+        for side in SIDES {
+            measure(&shapes::triangle_torus(side, side)?, &mut samples)?;
+        }
+        Ok(samples)
+    };
+    common::run(DATA, ROUNDS, measure_all, draw)
 }
 
 fn scans(info: &StructureInfo) -> bool {
@@ -91,6 +76,11 @@ fn scans(info: &StructureInfo) -> bool {
 fn measure(polygons: &PolygonMesh, samples: &mut Samples) -> Result<(), Box<dyn Error>> {
     let faces = polygons.face_count();
     let mut jobs: Vec<(Line, Box<dyn Editor>)> = Vec::new();
+    let line = |what: &str, backend: &Backend| Line {
+        what: what.into(),
+        backend: backend.name().into(),
+        faces,
+    };
     for backend in Backend::structures() {
         for edit in Edit::ALL {
             let places = match backend.info.edits[edit as usize] {
@@ -99,20 +89,20 @@ fn measure(polygons: &PolygonMesh, samples: &mut Samples) -> Result<(), Box<dyn 
                 Some(_) => PLACES,
             };
             // The soup and the face set need a search to find the places.
-            let places = if scans(&backend.info) || WHOLE_MESH.contains(&edit) {
+            let places = if scans(&backend.info) {
                 PLACES_SCANNED
             } else {
                 places
             };
             let job = SingleEdit { edit, places };
             if let Some(editor) = job.prepare(&backend, polygons) {
-                jobs.push(((edit.name(), backend.name()), editor?));
+                jobs.push((line(edit.name(), &backend), editor?));
             }
         }
         if faces <= MAX_SCANNED_FACES || !scans(&backend.info) {
             for pass in EditPass::ALL {
                 if let Some(editor) = pass.prepare(&backend, polygons) {
-                    jobs.push(((pass.name(), backend.name()), editor?));
+                    jobs.push((line(pass.name(), &backend), editor?));
                 }
             }
         }
@@ -125,24 +115,22 @@ fn measure(polygons: &PolygonMesh, samples: &mut Samples) -> Result<(), Box<dyn 
             let series = Series::with_runs(copies as u32, &clock).with_untimed(1);
             let time = editor.time(&series).scaled(1.0 / copies as f64);
             let edits = editor.result();
-            if edits.refused > 0 && !EditPass::ALL.iter().any(|e| e.name() == line.0) {
-                return Err(format!("{line:?}: {edits:?}").into());
+            if edits.refused > 0 && !EditPass::ALL.iter().any(|e| e.name() == line.what) {
+                return Err(format!("{} on {}: {edits:?}", line.what, line.backend).into());
             }
             let ns = time.ns() / edits.elements.max(1) as f64;
-            samples.entry((*line, faces)).or_default().push(ns);
+            samples.entry(line.clone()).or_default().push(ns);
         }
     }
     Ok(())
 }
 
 /// Returns the numbers of faces and the times of an edit or a workload on a structure, sorted by the number of faces.
-fn points(rows: &[Times], what: &str, backend: &str) -> Vec<(f64, f64)> {
+fn points(rows: &[Row<Line>], what: &str, backend: &str) -> Vec<(f64, f64)> {
     let sizes = rows
         .iter()
-        .filter(|row| (&*row.what, &*row.backend) == (what, backend));
-    sizes
-        .map(|row| (row.faces as f64, median(&row.cpu_ns)))
-        .collect()
+        .filter(|row| (&*row.what.what, &*row.what.backend) == (what, backend));
+    sizes.map(|row| (row.what.faces as f64, row.ns())).collect()
 }
 
 /// Returns the exponent of growth: the slope of the line through the logarithms.
@@ -168,7 +156,7 @@ fn time_text(ns: f64) -> String {
     }
 }
 
-fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
+fn text(data: &Data<Line>) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of edits on each structure, as the mesh grows\n\n");
     text += &data.introduction("editing_report", "reports/editing");
     let rows = &data.results;
@@ -232,7 +220,7 @@ fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
 /// Writes a table with a row for each of `what` and a column for each structure.
 fn table<const N: usize>(
     text: &mut String,
-    rows: &[Times],
+    rows: &[Row<Line>],
     what: [&'static str; N],
     cell: impl Fn(&[(f64, f64)]) -> Option<String>,
 ) -> std::fmt::Result {
@@ -255,32 +243,9 @@ fn table<const N: usize>(
     Ok(())
 }
 
-/// The times of an edit on a structure and a mesh, one for each launch.
-#[derive(Deserialize, Serialize)]
-struct Times {
-    what: String,
-    backend: String,
-    faces: usize,
-    cpu_ns: Vec<f64>,
-}
-
-impl Row for Times {
-    type Key = (String, String, usize);
-    fn key(&self) -> Self::Key {
-        (self.what.clone(), self.backend.clone(), self.faces)
-    }
-    fn times(&self) -> &[f64] {
-        &self.cpu_ns
-    }
-    fn add_times(&mut self, times: &[f64]) {
-        self.cpu_ns.extend(times);
-    }
-}
-
-/// Writes the text, and draws the time per edit over the number of faces, from the data in `folder`.
-fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let data: Data<Times> = Data::read(&folder.join(DATA))?;
-    fs::write(folder.join("README.md"), text(&data)?)?;
+/// Writes the text, and draws the time per edit over the number of faces.
+fn draw(folder: &Path, data: &Data<Line>) -> Result<(), Box<dyn Error>> {
+    fs::write(folder.join("README.md"), text(data)?)?;
     let shown = [
         Edit::FlipEdge,
         Edit::CollapseEdge,

@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{Data, Row, Task};
+use common::{Data, Row};
 use serde::{Deserialize, Serialize};
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, shapes};
@@ -52,57 +52,47 @@ methods `native_fresh` and `native` do not build the structure again. For half-e
 are faster than `gather` and `scatter` at every level.
 ";
 
-/// A scheme, a method and a structure.
-type Line = (&'static str, &'static str, &'static str);
+/// A scheme, a method and a structure, at one level.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+struct Line {
+    scheme: String,
+    way: String,
+    backend: String,
+    level: u32,
+    /// The number of faces of the level.
+    faces: usize,
+}
 
-fn main() -> Result<(), Box<dyn Error>> {
-    match common::task()? {
-        Task::Launch => launch(),
-        Task::Draw(folder) => draw(&folder),
-        Task::Measure(folder, launches) => {
-            Data::<Times>::measure(launches, ROUNDS)?.write(&folder.join(DATA))?;
-            draw(&folder)
-        }
+impl Line {
+    fn is(&self, scheme: Scheme, way: Way, backend: &str) -> bool {
+        (&*self.scheme, &*self.way, &*self.backend) == (scheme.name(), way.name(), backend)
     }
 }
 
-/// Measures everything in this process, and writes the rows to standard output.
-fn launch() -> Result<(), Box<dyn Error>> {
-    common::start();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let polygons = shapes::geodesic(16)?;
-    let samples = pool.install(|| measure(&polygons))?;
-    let rows = samples
-        .into_iter()
-        .map(|(((scheme, way, backend), level), sample)| Times {
-            scheme: scheme.into(),
-            way: way.into(),
-            backend: backend.into(),
-            level,
-            faces: sample.faces,
-            cpu_ns: vec![common::median(&sample.ns)],
-        });
-    let rows: Vec<Times> = rows.collect();
-    Ok(serde_json::to_writer(std::io::stdout(), &rows)?)
+/// Returns the median time per face in nanoseconds.
+fn ns_per_face(row: &Row<Line>) -> f64 {
+    row.ns() / row.what.faces as f64
 }
 
-/// The number of faces and the times of the rounds, for one line at one level.
-#[derive(Default)]
-struct Sample {
-    faces: usize,
-    ns: Vec<f64>,
-}
+/// Times of the rounds in nanoseconds.
+type Samples = BTreeMap<Line, Vec<f64>>;
 
-type Samples = BTreeMap<(Line, u32), Sample>;
+fn main() -> Result<(), Box<dyn Error>> {
+    let measure_all = || {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        let polygons = shapes::geodesic(16)?;
+        Ok(pool.install(|| measure(&polygons))?)
+    };
+    common::run(DATA, ROUNDS, measure_all, draw)
+}
 
 fn measure(polygons: &PolygonMesh) -> Result<Samples, SubdivisionError> {
     let mut samples = Samples::new();
-    let mut jobs: Vec<(Line, u32, Box<dyn Refiner>)> = Vec::new();
+    let mut jobs: Vec<(Line, Box<dyn Refiner>)> = Vec::new();
     let clock = MachineClock::start();
     for scheme in SCHEMES {
         for way in Way::ALL {
             for backend in Backend::structures() {
-                let line = (scheme.name(), way.name(), backend.name());
                 for level in 1..=LEVELS {
                     let job = SubdivisionJob::new(scheme, way, level);
                     let ready = job.prepare(&backend, polygons, &Creases::default());
@@ -112,7 +102,14 @@ fn measure(polygons: &PolygonMesh) -> Result<Samples, SubdivisionError> {
                         break;
                     }
                     let time = (clock.now() - start).ns();
-                    jobs.push((line, level, refiner));
+                    let line = Line {
+                        scheme: scheme.name().into(),
+                        way: way.name().into(),
+                        backend: backend.name().into(),
+                        level,
+                        faces: refiner.result().0,
+                    };
+                    jobs.push((line, refiner));
                     if time > MAX_RUN_NS {
                         break;
                     }
@@ -121,19 +118,17 @@ fn measure(polygons: &PolygonMesh) -> Result<Samples, SubdivisionError> {
         }
     }
     for _ in 0..ROUNDS {
-        for (line, level, refiner) in &mut jobs {
+        for (line, refiner) in &mut jobs {
             let start = clock.now();
             refiner.run()?;
             let time = clock.now() - start;
-            let sample = samples.entry((*line, *level)).or_default();
-            sample.faces = refiner.result().0;
-            sample.ns.push(time.ns());
+            samples.entry(line.clone()).or_default().push(time.ns());
         }
     }
     Ok(samples)
 }
 
-fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
+fn text(data: &Data<Line>) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
     text += &data.introduction("subdivision_report", "reports/subdivision");
     let rows = &data.results;
@@ -150,12 +145,10 @@ fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
         writeln!(text, "{head}\n{rule}")?;
         for way in Way::ALL {
             for backend in Backend::structures() {
-                let line = (scheme.name(), way.name(), backend.name());
-                let row = |level| {
-                    rows.iter()
-                        .find(|row| (row.line(), row.level) == (line, level))
+                let is = |row: &&Row<Line>, level| {
+                    row.what.level == level && row.what.is(scheme, way, backend.name())
                 };
-                let at = |level| row(level).map(Times::ns_per_face);
+                let at = |level| rows.iter().find(|row| is(row, level)).map(ns_per_face);
                 if at(1).is_none() {
                     continue;
                 }
@@ -175,57 +168,14 @@ fn text(data: &Data<Times>) -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// The times of a scheme, a method and a structure at one level, one for each launch.
-#[derive(Deserialize, Serialize)]
-struct Times {
-    scheme: String,
-    way: String,
-    backend: String,
-    level: u32,
-    faces: usize,
-    cpu_ns: Vec<f64>,
-}
-
-impl Times {
-    fn line(&self) -> (&str, &str, &str) {
-        (&self.scheme, &self.way, &self.backend)
-    }
-
-    /// Returns the median time per face in nanoseconds.
-    fn ns_per_face(&self) -> f64 {
-        common::median(&self.cpu_ns) / self.faces as f64
-    }
-}
-
-impl Row for Times {
-    type Key = (String, String, String, u32);
-    fn key(&self) -> Self::Key {
-        let Self {
-            scheme,
-            way,
-            backend,
-            ..
-        } = self;
-        (scheme.clone(), way.clone(), backend.clone(), self.level)
-    }
-    fn times(&self) -> &[f64] {
-        &self.cpu_ns
-    }
-    fn add_times(&mut self, times: &[f64]) {
-        self.cpu_ns.extend(times);
-    }
-}
-
-/// Writes the text, and draws the time per new face over the number of faces, from the data in `folder`.
-fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let data: Data<Times> = Data::read(&folder.join(DATA))?;
-    fs::write(folder.join("README.md"), text(&data)?)?;
+/// Writes the text, and draws the time per new face over the number of faces.
+fn draw(folder: &Path, data: &Data<Line>) -> Result<(), Box<dyn Error>> {
+    fs::write(folder.join("README.md"), text(data)?)?;
     let ways = [Way::Gather, Way::Scatter, Way::Native];
     let line = |scheme: Scheme, way: Way, backend: &'static str| {
-        let line = (scheme.name(), way.name(), backend);
         let rows = data.results.iter();
-        let rows = rows.filter(|row| row.line() == line);
-        let points = rows.map(|row| (row.faces as f64, row.ns_per_face()));
+        let rows = rows.filter(|row| row.what.is(scheme, way, backend));
+        let points = rows.map(|row| (row.what.faces as f64, ns_per_face(row)));
         (backend, points.collect())
     };
     let panel = |(scheme, way): (Scheme, Way)| Panel {

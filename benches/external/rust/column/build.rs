@@ -13,6 +13,7 @@ fn main() {
     let optimised = env::var("OPT_LEVEL").unwrap_or_default();
     let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
     let flags = flags.replace('\x1f', " ");
+    // Link-time optimisation is set in the profile of this workspace.
     let described = format!("{version} -O{optimised}, link-time optimisation, {flags}");
     println!(
         "cargo::rustc-env=COMPILER={}",

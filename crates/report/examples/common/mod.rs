@@ -4,11 +4,10 @@
 //! and writes its rows as JSON. What changes from process to process, such as addresses, is therefore part of the variation.
 
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::error::Error;
 use std::fs;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde::de::DeserializeOwned;
@@ -17,99 +16,111 @@ use sixfold_results::{Environment, Policy, Run, RunSettings, Start};
 use sixfold_study::HeapGuard;
 
 /// Describes the machine, and keeps freed memory pages from now on.
-pub(crate) fn start() -> Run {
+fn start() -> Run {
     let heap = HeapGuard::acquire(Policy::Kept).expect("the only guard");
     let mut run = sixfold_study::start_run(RunSettings::default());
     run.environment.heap = Some(heap.hold_until_exit());
     run
 }
 
-/// What the program is asked to do, from its arguments.
-pub(crate) enum Task {
-    /// To measure in this number of launches, and to write the report into the folder.
-    Measure(PathBuf, usize),
-    /// To measure once, and to write the rows to standard output.
-    Launch,
-    /// To write the text and the figure again, from the data in the folder.
-    Draw(PathBuf),
+/// A row of a report: what was measured, and one time in nanoseconds for each launch.
+#[derive(Deserialize, Serialize)]
+pub(crate) struct Row<W> {
+    #[serde(flatten)]
+    pub(crate) what: W,
+    cpu_ns: Vec<f64>,
 }
 
-pub(crate) fn task() -> Result<Task, Box<dyn Error>> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    Ok(match words[..] {
-        ["--launch"] => Task::Launch,
-        [folder, "--draw"] => Task::Draw(folder.into()),
-        [folder] => Task::Measure(folder.into(), 5),
-        [folder, launches] => Task::Measure(folder.into(), launches.parse::<NonZeroUsize>()?.get()),
-        _ => return Err("usage: FOLDER [LAUNCHES | --draw]".into()),
-    })
-}
-
-/// A row of a report: what was measured, and one time for each launch.
-pub(crate) trait Row: DeserializeOwned + Serialize {
-    /// What was measured.
-    type Key: Ord;
-    fn key(&self) -> Self::Key;
-    fn times(&self) -> &[f64];
-    fn add_times(&mut self, times: &[f64]);
+impl<W> Row<W> {
+    /// Returns the median of the launches.
+    pub(crate) fn ns(&self) -> f64 {
+        median(&self.cpu_ns)
+    }
 }
 
 /// The data of a report.
 #[derive(Deserialize, Serialize)]
-pub(crate) struct Data<R> {
+pub(crate) struct Data<W> {
     environment: Environment,
     start: Start,
     launches: usize,
     rounds: usize,
-    pub(crate) results: Vec<R>,
+    pub(crate) results: Vec<Row<W>>,
 }
 
-impl<R: Row> Data<R> {
-    /// Starts this program `launches` times, one after the other, and collects the times of equal rows. A launch has
-    /// this number of `rounds`, each of which runs everything once; its time is their median.
-    pub(crate) fn measure(launches: usize, rounds: usize) -> Result<Self, Box<dyn Error>> {
+/// Does what the arguments ask for: measures in launches and draws the report, or only draws it again (`--draw`), or is
+/// one of the launches. The data are in `file` in the folder of the report. `measure` returns the times of a launch,
+/// one for each of its `rounds`, of which the median counts. `draw` writes the text and the figure.
+pub(crate) fn run<W: Ord + Serialize + DeserializeOwned>(
+    file: &str,
+    rounds: usize,
+    measure: impl FnOnce() -> Result<BTreeMap<W, Vec<f64>>, Box<dyn Error>>,
+    draw: impl FnOnce(&Path, &Data<W>) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let (folder, launches) = match words[..] {
+        ["--launch"] => {
+            start();
+            let rows = measure()?.into_iter().map(|(what, times)| Row {
+                what,
+                cpu_ns: vec![median(&times)],
+            });
+            let rows: Vec<Row<W>> = rows.collect();
+            return Ok(serde_json::to_writer(std::io::stdout(), &rows)?);
+        }
+        [folder, "--draw"] => (Path::new(folder), None),
+        [folder] => (Path::new(folder), Some(5)),
+        [folder, launches] => (
+            Path::new(folder),
+            Some(launches.parse::<NonZeroUsize>()?.get()),
+        ),
+        _ => return Err("usage: FOLDER [LAUNCHES | --draw]".into()),
+    };
+    let path = folder.join(file);
+    if let Some(launches) = launches {
+        let data = Data::<W>::measure(launches, rounds)?;
+        fs::create_dir_all(folder)?;
+        fs::write(&path, serde_json::to_string_pretty(&data)? + "\n")?;
+    }
+    draw(folder, &serde_json::from_slice(&fs::read(path)?)?)
+}
+
+impl<W: Ord + DeserializeOwned> Data<W> {
+    /// Starts this program `launches` times, one after the other, and collects the times of equal rows.
+    fn measure(launches: usize, rounds: usize) -> Result<Self, Box<dyn Error>> {
         let run = start();
-        let mut rows: BTreeMap<R::Key, R> = BTreeMap::new();
+        let mut rows: BTreeMap<W, Vec<f64>> = BTreeMap::new();
         for launch in 1..=launches {
             let mut command = Command::new(std::env::current_exe()?);
             let output = command.arg("--launch").stderr(Stdio::inherit()).output()?;
             if !output.status.success() {
                 return Err(format!("launch {launch} failed: {}", output.status).into());
             }
-            for row in serde_json::from_slice::<Vec<R>>(&output.stdout)? {
-                match rows.entry(row.key()) {
-                    Entry::Vacant(entry) => _ = entry.insert(row),
-                    Entry::Occupied(mut entry) => entry.get_mut().add_times(row.times()),
-                }
+            for Row { what, cpu_ns } in serde_json::from_slice::<Vec<Row<W>>>(&output.stdout)? {
+                rows.entry(what).or_default().extend(cpu_ns);
             }
             eprintln!("launch {launch} of {launches} measured");
         }
+        let rows = rows.into_iter().map(|(what, cpu_ns)| Row { what, cpu_ns });
         Ok(Self {
             environment: run.environment,
             start: run.start,
             launches,
             rounds,
-            results: rows.into_values().collect(),
+            results: rows.collect(),
         })
     }
+}
 
-    pub(crate) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
-        Ok(serde_json::from_slice(&fs::read(path)?)?)
-    }
-
-    pub(crate) fn write(&self, path: &Path) -> Result<(), Box<dyn Error>> {
-        fs::create_dir_all(path.parent().unwrap_or(path))?;
-        Ok(fs::write(path, serde_json::to_string_pretty(self)? + "\n")?)
-    }
-
+impl<W> Data<W> {
     /// Returns the command that makes the report, as a code block, and a description of the machine.
     pub(crate) fn introduction(&self, example: &str, folder: &str) -> String {
         let Self { launches, .. } = self;
         let spreads: Vec<f64> = self
             .results
             .iter()
-            .filter_map(|row| spread(row.times()))
+            .filter_map(|row| spread(&row.cpu_ns))
             .collect();
         let varies = match spreads[..] {
             [] => String::new(),
@@ -140,7 +151,7 @@ fn spread(times: &[f64]) -> Option<f64> {
     (times.len() > 1).then(|| (squares / (times.len() - 1) as f64).sqrt() / mean)
 }
 
-pub(crate) fn median(samples: &[f64]) -> f64 {
+fn median(samples: &[f64]) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     f64::midpoint(sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2])

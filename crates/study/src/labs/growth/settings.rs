@@ -33,8 +33,8 @@ pub struct GrowthSettings {
     pub shape: String,
     /// Order of the elements in memory.
     pub order: Order,
-    /// Seed of the random order. All launches of a measurement have the same, because their meshes must be
-    /// the same, and another seed in `study`.
+    /// Seed of the random order. It is the same in all launches of a measurement, so that they measure the
+    /// same meshes; the seed in `study` differs from launch to launch.
     pub order_seed: u64,
     /// Approximate number of faces of the smallest size.
     pub from: usize,
