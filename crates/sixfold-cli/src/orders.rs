@@ -154,3 +154,30 @@ fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> Str
     }
     table.trim_fmt()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use sixfold_results::Results;
+
+    use super::*;
+
+    /// The times of a scan over a million triangles are the longest figures.
+    #[test]
+    fn tables_of_a_million_faces_cut_no_name() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reports/orders/orders.json");
+        let text = fs::read_to_string(path).expect("the committed report");
+        let results = Results::read_json(&text).expect("a document");
+        let report = results.orders().next().expect("orders");
+        assert_eq!(report.comparisons.len(), 6);
+        for comparison in &report.comparisons {
+            let rows: Vec<&ResultRow> = report.rows(&comparison.operation).collect();
+            let table = table(comparison, &rows, &mut Signs::new(false));
+            assert!(table.contains("indexed-face-set"), "{table}");
+            let width = table.lines().map(|line| line.chars().count()).max();
+            assert!(width.is_some_and(|width| width <= 80), "{table}");
+        }
+    }
+}
