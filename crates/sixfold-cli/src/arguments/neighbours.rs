@@ -28,7 +28,8 @@ Tasks:
   first_hit         where a ray first hits the surface
 
 All indices must give the same answers. Up to 10,000 points are searched for. On a large mesh, the
-list answers only some of the queries, and its time is scaled.
+list answers only some of the queries, and its time is scaled; so does an index whose queries would
+take longer than --budget allows.
 
 Exit codes: 0 success; 1 the answers of two indices differ (a fault in Sixfold); 2 wrong usage or
 unusable input; 4 interrupted, finished results are kept.";

@@ -77,6 +77,8 @@ pub(crate) struct Entry {
     /// Cost of one element of a run, in visits of an element. Only a task that neither scans nor makes
     /// elements is planned by it.
     pub(crate) visits: f64,
+    /// Number of queries of a run, if a run may answer a part of them; otherwise 0.
+    pub(crate) queries: usize,
     /// Whether the clock stops between runs of the task.
     pub(crate) pauses_clock: bool,
     /// The entry takes part in every n-th round at most.
@@ -159,6 +161,7 @@ impl Entry {
             case: "",
             scans: false,
             visits: 1.0,
+            queries: 0,
             pauses_clock: false,
             least_every: 1,
             untimed: 1,

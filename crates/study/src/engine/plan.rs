@@ -26,6 +26,8 @@ const LONGEST_IN_ROUNDS: f64 = 0.1;
 const SCANS_PART: f64 = 0.25;
 /// Minimum number of elements in a sample.
 pub(crate) const MIN_ELEMENTS: usize = 16;
+/// Minimum number of queries in a sample. They differ in their cost, so a few do not show the mean.
+const MIN_QUERIES: usize = 256;
 /// Maximum time of a single run outside the rounds of an operation that was requested by name, as a part of the
 /// budget.
 const LONGEST_ONCE: f64 = ESTIMATED_NAMED_SHARE;
@@ -144,8 +146,14 @@ impl Measurement<'_, '_> {
         })
     }
 
-    /// Plans runs on all elements.
+    /// Plans runs on all elements, or on a part of the queries if all of them take too long.
     fn plan_whole(&mut self, entry: &mut Entry, slot_ns: f64) {
+        if entry.queries > MIN_QUERIES {
+            entry.job.sample = self.affordable_queries(entry, slot_ns);
+        }
+        if entry.job.sample.is_some() {
+            return self.plan_sample(entry, slot_ns);
+        }
         let (run, mut overhead_ns) = self.run_with_overhead(entry, [0, 1], true);
         let mut ns = run.time.ns().max(1.0);
         record_warm_up(entry, run);
@@ -174,6 +182,22 @@ impl Measurement<'_, '_> {
         entry.untimed = untimed_runs(entry.job.task, ns, before, large);
         let cost = ns * f64::from(entry.runs + entry.untimed) + overhead_ns;
         self.plan_rounds(entry, cost, slot_ns);
+    }
+
+    /// Returns the queries that fit into the longest sample that takes part in every third round. `None` if
+    /// all of them fit.
+    fn affordable_queries(&mut self, entry: &Entry, slot_ns: f64) -> Option<ElementSample> {
+        let (all, scanned) = (entry.queries, [true, false, false]);
+        let most = MEDIUM_COST_SLOTS * slot_ns;
+        let whole = self
+            .probe(entry, entry.job.task, scanned, all, most)
+            .whole
+            .ns();
+        let fitting = (all as f64 * most / whole) as usize;
+        (fitting < all).then(|| ElementSample {
+            scanned,
+            size: fitting.max(MIN_QUERIES),
+        })
     }
 
     /// Returns the run, and the wall time that passed outside the timed part, in nanoseconds.
@@ -218,7 +242,8 @@ impl Measurement<'_, '_> {
             _ => operation,
         };
         let all = self.max_elements(scanned);
-        let Probe { whole, cost, size } = self.probe(entry.subject, probed, scanned, slot_ns);
+        let probed = Task::Operation(probed);
+        let Probe { whole, cost, size } = self.probe(entry, probed, scanned, all, slot_ns);
         let fits = match operation.can_be_sampled() {
             true => whole.ns() <= slot_ns || all <= MIN_ELEMENTS,
             // A run as short as one sample is always allowed.
@@ -238,6 +263,11 @@ impl Measurement<'_, '_> {
         let each = cost / size.min(all).max(1) as f64;
         let size = ((slot_ns / each) as usize).clamp(MIN_ELEMENTS, all.max(MIN_ELEMENTS));
         entry.job.sample = Some(ElementSample { scanned, size });
+        self.plan_sample(entry, slot_ns);
+    }
+
+    /// Plans one run on the sample of `entry`, without a warm-up: the sample is long.
+    fn plan_sample(&mut self, entry: &mut Entry, slot_ns: f64) {
         entry.untimed = 0;
         let start = self.clock().now().wall_ns;
         let run = self.run(entry.subject, &entry.job, [0, 1], true);
@@ -251,23 +281,24 @@ impl Measurement<'_, '_> {
         counts.map(|k| self.population()[k]).max().unwrap_or(0)
     }
 
-    /// Times increasing numbers of elements until one run takes as long as a sample.
+    /// Times increasing numbers of the `all` elements until one run takes as long as a sample. Runs `task` on
+    /// the backend of `entry`.
     fn probe(
         &mut self,
-        subject: usize,
-        operation: Operation,
+        entry: &Entry,
+        task: Task,
         scanned: [bool; 3],
+        all: usize,
         slot_ns: f64,
     ) -> Probe {
-        let all = self.max_elements(scanned);
         let mut size = 4;
         loop {
             let job = Job {
                 sample: Some(ElementSample { scanned, size }),
-                ..operation.into()
+                ..Job::new(task)
             };
             let start = self.clock().now().wall_ns;
-            let whole = self.run(subject, &job, [0, 1], false).time;
+            let whole = self.run(entry.subject, &job, [0, 1], false).time;
             let cost = self.clock().now().wall_ns - start;
             if cost > slot_ns.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
                 return Probe { whole, cost, size };
@@ -329,8 +360,9 @@ impl Measurement<'_, '_> {
             let only = ElementKind::ALL.map(|other| other == kind);
             let relations = entry.operation().map_or(&[][..], |o| o.relations(kind));
             for &relation in relations {
-                let query = Operation::Relation(relation);
-                let probe = self.probe(entry.subject, query, only, slot_ns);
+                let query = Task::Operation(Operation::Relation(relation));
+                let all = self.max_elements(only);
+                let probe = self.probe(entry, query, only, all, slot_ns);
                 total = total.plus(probe.whole);
             }
         }

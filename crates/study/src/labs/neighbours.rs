@@ -99,7 +99,8 @@ pub fn neighbour_indices() -> [&'static str; 5] {
 /// building and queries.
 ///
 /// The list visits every element for each query. On a large mesh, the list therefore answers only
-/// the first queries, and its time is scaled. Setting `stop` to true ends the measurement after the
+/// a part of the queries, spread evenly over all of them, and its time is scaled. With a budget, so does an index
+/// whose queries take too long, such as a grid that is asked for points far from any vertex. Setting `stop` to true ends the measurement after the
 /// current sample, with a report of the finished part.
 ///
 /// The heap policy of `settings` applies to the whole process until the function returns; see
@@ -234,6 +235,9 @@ fn entries(columns: &Columns<'_>, input: &Input) -> Vec<Entry> {
             entry.pauses_clock = task.build().is_none();
             entry.per = task.unit();
             entry.visits = VISITS_PER_QUERY;
+            if !entry.pauses_clock && index.name() != LIST {
+                entry.queries = input.points.len();
+            }
             if index.name() == LIST {
                 let items = match task.build() {
                     Some(SpatialTask::BuildVertices) => input.vertices.len(),

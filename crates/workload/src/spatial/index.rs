@@ -81,15 +81,16 @@ struct Indices<'i, V, T> {
 }
 
 impl<V: SpatialIndex<Vertex>, T: SpatialIndex<Triangle>> Indices<'_, V, T> {
-    /// Answers the first `count` queries of `task`. Returns a number computed from all answers.
+    /// Answers `count` queries of `task`, spread evenly over all of them. Returns a number computed from all
+    /// answers.
     fn answer(&self, task: SpatialTask, count: usize) -> f64 {
-        let points = &self.input.points[..count.min(self.input.points.len())];
-        let rays = &self.input.rays[..count.min(self.input.rays.len())];
+        let points = evenly(&self.input.points, count);
+        let rays = evenly(&self.input.rays, count);
         match task {
             SpatialTask::BuildVertices => self.vertices.items().len() as f64,
             SpatialTask::BuildTriangles => self.triangles.items().len() as f64,
             SpatialTask::NearestVertex => {
-                let found = points.iter().filter_map(|&p| self.vertices.nearest(p));
+                let found = points.filter_map(|&p| self.vertices.nearest(p));
                 found.map(|n| n.vertex.index() as f64).sum()
             }
             SpatialTask::VerticesWithin => {
@@ -110,14 +111,12 @@ impl<V: SpatialIndex<Vertex>, T: SpatialIndex<Triangle>> Indices<'_, V, T> {
                 sum
             }
             SpatialTask::ClosestPoint => {
-                let found = points
-                    .iter()
-                    .filter_map(|&p| self.triangles.closest_point(p));
+                let found = points.filter_map(|&p| self.triangles.closest_point(p));
                 found.map(|point| point.face.index() as f64).sum()
             }
             SpatialTask::FirstHit => {
                 let hit = |ray| self.triangles.first_hit(ray, f64::INFINITY);
-                let found = rays.iter().filter_map(hit);
+                let found = rays.filter_map(hit);
                 found.map(|hit| hit.face.index() as f64).sum()
             }
         }
@@ -188,6 +187,12 @@ impl<V: SpatialIndex<Vertex>, T: SpatialIndex<Triangle>> TimedBackend for Indice
     }
 }
 
+/// Returns `count` of the queries, or all of them, at equal distances.
+fn evenly<Q>(queries: &[Q], count: usize) -> impl Iterator<Item = &Q> {
+    let step = (queries.len() / count.max(1)).max(1);
+    queries.iter().step_by(step).take(count)
+}
+
 /// Times building an index from a copy of `items`. Copying is not timed.
 fn time_build<T: SpatialIndex<I>, I: Item>(items: &[I], series: &Series<'_>) -> Time {
     let mut total = Time::zero_like(series.clock.now());
@@ -208,4 +213,21 @@ fn timed<R>(clock: &dyn Clock, work: impl FnOnce() -> R) -> (Time, R) {
     let mut result = None;
     let time = crate::clock::timed(clock, || result = Some(work()));
     (time, result.expect("the work was run"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_the_queries_is_spread_over_all_of_them() {
+        let queries: Vec<usize> = (0..10).collect();
+        let chosen = |count| evenly(&queries, count).copied().collect::<Vec<_>>();
+        assert_eq!(chosen(3), [0, 3, 6]);
+        assert_eq!(chosen(4), [0, 2, 4, 6]);
+        assert_eq!(chosen(10), queries);
+        assert_eq!(chosen(11), queries);
+        assert_eq!(chosen(0), [0; 0]);
+        assert_eq!(evenly(&[0; 0], 3).count(), 0);
+    }
 }

@@ -107,6 +107,41 @@ fn all_indices_give_the_same_answers() {
 }
 
 #[test]
+fn an_index_whose_queries_are_slow_answers_a_part_of_them_and_keeps_the_budget() {
+    let mesh = ball(30);
+    // A query of the grid takes 1 ms, so all 9,002 queries take 9 s.
+    let slow = |work: &Work<'_>| match (work.backend, work.task) {
+        ("grid", Task::Part(part)) if SpatialTask::ALL[part].build().is_some() => {
+            work.counts.vertices as f64 * 1e6
+        }
+        _ => costs(work) / 10.0,
+    };
+    for budget_ms in [3000, 30_000] {
+        let settings = NeighboursSettings {
+            effort: Effort::of_ms(budget_ms),
+            indices: ["grid", "octree", "kd-tree"].map(Into::into).into(),
+            ..settings()
+        };
+        let machine = SimulatedMachine::with_costs(slow);
+        let report = measure_on(&machine, &mesh, &settings);
+        assert!(machine.ns() <= budget_ms as f64 * 1e6, "{}", machine.ns());
+        let rows: Vec<&ResultRow> = report.rows(SpatialTask::NearestVertex.name()).collect();
+        let sizes = rows.iter().map(|row| row.sample_size);
+        let [grid, octree, kd_tree] = sizes.collect::<Vec<_>>()[..] else {
+            panic!("three indices");
+        };
+        assert!(
+            grid.is_some_and(|size| (256..9002).contains(&size)),
+            "{grid:?}"
+        );
+        assert_eq!([octree, kd_tree], [None; 2], "45 and 18 ms for all queries");
+        let each = rows[0].ns_per_element.expect("a time");
+        assert!((each / 1e6 - 1.0).abs() < 1e-9, "{each}");
+        assert!(rows.iter().all(|row| row.samples >= 1));
+    }
+}
+
+#[test]
 fn the_cheapest_index_changes_with_the_number_of_queries_on_any_machine() {
     let mesh = ball(8);
     for speed in [1.0, 0.1, 25.0] {
