@@ -1,10 +1,10 @@
-"""The claims of reports/neighbours/README.md, whose table is computed from the three documents of the folder."""
+"""The claims of reports/neighbours/README.md, whose table is computed from the four documents of the folder."""
 
 from checks import data, figures
 from checks.claims import Claims
 
 FOLDER = "reports/neighbours"
-DOCUMENTS = tuple(f"{FOLDER}/{name}.json" for name in ("built-in-near", "built-in-box", "sphere-near"))
+DOCUMENTS = tuple(f"{FOLDER}/{name}.json" for name in ("built-in-near", "built-in-box", "sphere-near", "sphere-box"))
 TASKS = (
     "build_vertices", "nearest_vertex", "vertices_within", "nearest_eight", "build_triangles", "closest_point", "first_hit",
 )
@@ -12,7 +12,7 @@ TASKS = (
 page = Claims(
     f"{FOLDER}/README.md",
     definitions="""
-        writes three results
+        writes four results
         a geodesic sphere of 499,280 triangles
         the eight nearest vertices
         the two fastest indices
@@ -35,7 +35,7 @@ def row(task):
 
 
 for name in TASKS:
-    page.row(f"| `{name}` | {{}} | {{}} | {{}} |", row, name)
+    page.row(f"| `{name}` | {{}} | {{}} | {{}} | {{}} |", row, name)
 
 
 @page.says("``` {}; {} cores; {} {}; {}, {} {}; Sixfold {} ({})")
@@ -44,6 +44,15 @@ def machine():
     data.require(all(data.environment(path)["commit"] == e["commit"] for path in DOCUMENTS), "several commits")
     compiler = e["rustc"].split(" (")[0], e["profile"], e["rustflags"]
     return e["cpu_model"], str(e["cores"]), e["os"], e["kernel"], *compiler, e["sixfold"], e["commit"]
+
+
+@page.says("the grid takes {} times the time of the fastest index for `nearest_vertex` in the box, and {} times near the surface.")
+def grid_in_the_box():
+    rows = lambda path: data.finding(path, "neighbours")["results"]
+    grid = lambda path: next(row for row in rows(path) if (row["operation"], row["backend"]) == ("nearest_vertex", "grid"))
+    near, box = (grid(path) for path in DOCUMENTS[2:])
+    data.require(box["sample_size"] is not None, "the grid answered all queries in the box")
+    return figures.ratio(box["ratio_to_best"]), figures.ratio(near["ratio_to_best"])
 
 
 TEXTS = [page]

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use comfy_table::Cell;
 use sixfold_results::numbers::figure;
-use sixfold_results::{NeighboursReport, Policy, SpatialTask};
+use sixfold_results::{IndexReport, NeighboursReport, Policy, SpatialTask};
 use sixfold_study::{NeighboursSettings, Progress};
 
 use crate::arguments::Neighbours;
@@ -16,7 +16,7 @@ use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
 use crate::signs::{Signs, right};
 use crate::study::print_end;
-use crate::tables::styled;
+use crate::tables::{stacked, unbroken};
 use crate::text::TextOutput;
 
 pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
@@ -68,15 +68,24 @@ fn print(report: &NeighboursReport, text: &mut TextOutput) {
     print_end(Vec::new(), &report.run, samples, text);
 }
 
-/// Returns the table with a row per task and a column per index, and its legend.
+/// Returns the table with a row per task and a column per index, and its legend. If the terminal is too narrow, the
+/// indices are divided into several tables below one another.
 fn table(report: &NeighboursReport, bold: bool) -> String {
     let mut signs = Signs::new(bold);
+    let indices: Vec<&IndexReport> = report.backends.iter().collect();
+    let table = stacked(&indices, |part| table_of(report, part, &mut signs));
+    signs.explain("size: both indices, of the vertices and of the triangles (1 kB = 1,000 bytes)");
+    format!("{table}\n{}", signs.legend())
+}
+
+/// Returns the table of some of the indices.
+fn table_of(report: &NeighboursReport, indices: &[&IndexReport], signs: &mut Signs) -> String {
     let mut header = vec![Cell::new("ns"), Cell::new("per")];
-    header.extend(report.backends.iter().map(|index| right(&index.name)));
-    let mut table = styled(header, bold);
+    header.extend(indices.iter().map(|index| right(&index.name)));
+    let mut table = unbroken(header, signs.is_bold());
     for task in SpatialTask::ALL {
         let mut line = vec![Cell::new(task), Cell::new(task.unit())];
-        for index in &report.backends {
+        for index in indices {
             let row = report
                 .rows(task.name())
                 .find(|row| row.backend == index.name);
@@ -87,8 +96,10 @@ fn table(report: &NeighboursReport, bold: bool) -> String {
     }
     let mut sizes = vec![Cell::new("size"), Cell::new("kB")];
     let kb = |bytes: usize| figure(bytes as f64 / 1000.0);
-    sizes.extend(report.backends.iter().map(|index| right(kb(index.bytes))));
+    sizes.extend(indices.iter().map(|index| right(kb(index.bytes))));
     table.add_row(sizes);
-    signs.explain("size: both indices, of the vertices and of the triangles (1 kB = 1,000 bytes)");
-    format!("{}\n{}", table.trim_fmt(), signs.legend())
+    for column in table.column_iter_mut().skip(1) {
+        column.set_padding((1, 0));
+    }
+    table.trim_fmt()
 }

@@ -26,8 +26,8 @@ pub struct Trace {
     pub vertices: usize,
     /// The number of faces of this mesh.
     pub faces: usize,
-    /// The time of one run outside the calls, in nanoseconds. It is added to the time of every
-    /// structure. It can be negative if the calls take longer when they are run from a trace.
+    /// The time of one run outside the calls, in nanoseconds; 0 if it is too short to be measured. It is
+    /// added to the time of every structure.
     pub own_ns: f64,
     pub(crate) calls: Vec<Call>,
     /// The edits, in order.

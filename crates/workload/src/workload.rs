@@ -25,7 +25,7 @@ pub struct Workload {
     /// The number of times that the program rebuilds the structure while it uses one mesh. The
     /// first build does not count.
     pub rebuilds: u64,
-    /// The time of the program's own work for each operation, in nanoseconds. It is added to the
+    /// The time of the program's own work for each operation, in nanoseconds; 0 or more. It is added to the
     /// time of every backend.
     #[serde(default)]
     pub own_ns: f64,

@@ -125,9 +125,9 @@ impl Workload {
         };
         let own_ns = match &parsed.own_ns {
             None => 0.0,
-            Some(number) if number.get_ref().abs() <= MAX_AMOUNT => *number.get_ref(),
+            Some(number) if (0.0..=MAX_AMOUNT).contains(number.get_ref()) => *number.get_ref(),
             Some(number) => {
-                let message = format!("own_ns must be finite, not {}", number.get_ref());
+                let message = format!("own_ns must be 0 or greater, not {}", number.get_ref());
                 return Err(at(number.span(), message));
             }
         };
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_file_with_all_keys_is_parsed() {
-        let text = "summary = 'who'\naccess = 'patches'\noperations = '20 per face'\nrebuilds = 3\nown_ns = -2.5\n\
+        let text = "summary = 'who'\naccess = 'patches'\noperations = '20 per face'\nrebuilds = 3\nown_ns = 2.5\n\
             own_data = { face = { read = 4, written = 12 }, vertex.read = 8 }\n\
             [mix]\nflip_edge = 1\nvertex_faces = '2 per edge'\nboundary = 0.5\nposition = 0";
         let workload = parse(text).expect("fine");
@@ -240,7 +240,7 @@ mod tests {
             access: Access::Patches,
             operations: Amount::Per(20.0, ElementKind::Face),
             rebuilds: 3,
-            own_ns: -2.5,
+            own_ns: 2.5,
             own_data: OwnData {
                 vertex: OwnBytes {
                     read: 8,
@@ -296,7 +296,12 @@ mod tests {
             (
                 "operations = 5\nown_ns = nan\n[mix]\nposition = 1",
                 2,
-                "own_ns must be finite",
+                "own_ns must be 0 or greater",
+            ),
+            (
+                "operations = 5\nown_ns = -1.5\n[mix]\nposition = 1",
+                2,
+                "own_ns must be 0 or greater, not -1.5",
             ),
             (
                 "operations = 5\nown_data = { edge.written = 4097 }\n[mix]\nposition = 1",

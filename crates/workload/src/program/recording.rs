@@ -90,7 +90,10 @@ impl Recording {
             ),
             format!("access = \"{}\"", workload.access),
             format!("operations = \"{}\"", workload.operations),
-            format!("own_ns = {:?}", workload.own_ns),
+            match workload.own_ns {
+                0.0 => "own_ns = 0.0 # below what can be measured".to_owned(),
+                own_ns => format!("own_ns = {own_ns:?}"),
+            },
             String::new(),
         ];
         for (kind, visits) in ElementKind::ALL.into_iter().zip(&self.visits) {

@@ -220,7 +220,7 @@ fn traces_of_edits_do_the_same_on_all_structures() {
 fn traces_are_the_same_after_writing_and_reading() {
     let torus = shapes::triangle_torus(7, 5).expect("small");
     let mut queries = trace_of::<HalfEdgeMesh>(&torus);
-    queries.own_ns = -1.5;
+    queries.own_ns = 1.5;
     let (edits, _) = edits_of::<EditableHalfEdgeMesh>(&torus);
     for trace in [queries, edits] {
         let text = written(&trace);
@@ -303,7 +303,8 @@ fn wrong_traces_are_refused_with_their_line() {
         ("+item 1\n", 3, "outside a list"),
         ("+end\n", 3, "without a list"),
         ("+list corners\n", 3, "vertices, edges or faces"),
-        ("+own_ns inf\n", 3, "finite"),
+        ("+own_ns inf\n", 3, "0 or greater"),
+        ("+own_ns -2004376\n", 3, "0 or greater"),
         ("+add_vertex 0,0\n", 3, "is not a position"),
         ("+add_vertex 0,0,nan\n", 3, "is not a position"),
         ("+flip_edge\n", 3, "write `flip_edge v0-v1`"),

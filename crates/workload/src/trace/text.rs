@@ -65,6 +65,12 @@ impl Trace {
         writeln!(to, "{FIRST_LINE}")?;
         writeln!(to, "program {}", self.program.replace(['\n', '\r'], " "))?;
         writeln!(to, "mesh {} {}", self.vertices, self.faces)?;
+        if self.own_ns == 0.0 {
+            writeln!(
+                to,
+                "# The program's own time is below what can be measured."
+            )?;
+        }
         writeln!(to, "own_ns {}", self.own_ns)?;
         let mut kinds = Vec::new();
         let mut on_line = 0;
@@ -239,8 +245,8 @@ impl Reader {
             "mesh" => return self.mesh(words),
             "own_ns" => {
                 self.trace.own_ns = one(words.next(), "a number of nanoseconds")?;
-                if !self.trace.own_ns.is_finite() {
-                    return Err("own_ns must be a finite number".into());
+                if !(self.trace.own_ns >= 0.0 && self.trace.own_ns.is_finite()) {
+                    return Err("own_ns must be a number that is 0 or greater".into());
                 }
                 return nothing_more(words);
             }

@@ -61,7 +61,8 @@ pub struct RecordedProgram {
 ///
 /// Then measures the program, its trace and its workload in rounds, for the rest of the budget of
 /// `settings`. The time of the program minus the time of its trace is the program's own time, which
-/// is added to all times of the trace, and likewise for the workload.
+/// is added to all times of the trace, and likewise for the workload. It is 0 if the trace takes longer than
+/// the program.
 ///
 /// # Errors
 ///
@@ -234,7 +235,9 @@ fn calibrate(
         let turn = measured.entries[mix].outcome?;
         Some(time(mix)? / turn.elements.max(1) as f64)
     };
-    let rest = |ns: Option<f64>, run_ns: f64| ns.map_or(0.0, |ns| run_ns - ns);
+    // Calls that are run from a list can take longer than in the program. Then the own time is too short to
+    // be measured.
+    let rest = |ns: Option<f64>, run_ns: f64| ns.map_or(0.0, |ns| (run_ns - ns).max(0.0));
     recording.trace.own_ns = rest(trace.and_then(time), run_ns);
     recording.workload.own_ns = rest(mix.and_then(operation_ns), run_ns / operations);
     run_ns
