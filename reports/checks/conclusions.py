@@ -385,7 +385,7 @@ EXAMPLES = ("reports/editing/editing.json", "reports/subdivision/subdivision.jso
 
 
 @page.says(
-    "The first five of the list, and those on subdivision, editing and neighbours, were measured on the same machine, at commit {} "
+    "The first five of the list, and those on subdivision, editing and neighbours, were measured on machines of one kind, at commit {} "
     "(workloads: {})."
 )
 def measured():

@@ -16,8 +16,7 @@ page = Claims(
         takes two numbers
         is 0, Sixfold refuses
         more than a tenth of the budget
-        two cores of an AMD EPYC
-        which of the two is faster
+        two cores of an Intel Xeon
         the six access orders
         measured times of eight programs
         prints two lines
@@ -30,7 +29,7 @@ def answer():
     """Returns the cells of each backend in the printed table: times in milliseconds, and the interval of the ratio."""
     ms = lambda text: float(text.split()[0]) * {"ms": 1, "µs": 1e-3}[text.split()[1]]
     cell = r"([\d.]+ (?:ms|µs))"
-    pattern = rf"^ ([a-z-]+) +{cell} +[\d.]+ (?:\* )? *([\d.]+) to ([\d.]+) +{cell} "
+    pattern = rf"^([a-z-]+) +{cell} +\*?[\d.]+ +([\d.]+)–([\d.]+) +{cell} "
     rows = re.findall(pattern, data.content(PATH), re.MULTILINE)
     return {name: (ms(run), float(low), float(high), ms(build)) for name, run, low, high, build in rows}
 
@@ -45,12 +44,12 @@ def triangles():
 
 
 @page.says(
-    "The intervals of corner table and half-edge overlap, so the measurement does not show which of the two is faster. Both "
-    "are faster than winged-edge and face-vertex."
+    "The intervals of half-edge, winged-edge and corner table overlap, so the measurement does not show which of the three "
+    "is faster. All three are faster than face-vertex."
 )
 def intervals():
     low, high = ({name: row[side] for name, row in answer().items()} for side in (1, 2))
-    near, far = ("corner-table", "half-edge"), ("winged-edge", "face-vertex")
+    near, far = ("half-edge", "winged-edge", "corner-table"), ("face-vertex",)
     data.require(max(low[name] for name in near) <= min(high[name] for name in near), "the intervals do not overlap")
     data.require(max(high[name] for name in near) <= min(low[name] for name in far), "the intervals overlap")
 
@@ -63,7 +62,7 @@ def single_run():
     fastest = min(answer(), key=lambda name: answer()[name][0])
     data.require(fastest == "relation-tables", f"{fastest} takes the least time")
     once = {name: row[0] + row[3] for name, row in answer().items()}
-    data.require(once["face-vertex"] < once["relation-tables"], f"run and build take {once} ms")
+    data.require(once["half-edge"] < once["relation-tables"], f"run and build take {once} ms")
 
 
 @page.says("Here, the program queries the neighbours of each vertex once, and reads {} positions for each neighbour.")

@@ -31,13 +31,12 @@ page = Claims(
         on balls of two other sizes
         has three times
         a ball of 40,500 triangles, a torus of 60,000 triangles in random order, the built-in mesh of 20,000 triangles, a terrain with 27 holes (16,747 triangles), a scan of genus 12 (39,906 triangles), and a scan of 99,994 triangles
-        on the scan of 99,994 triangles
         The other five meshes
         measurement took 3 seconds
         with two cores
         The goals were 95 % of the cases and a mean regret of at most 1.02
         a *first answer*: the structure
-        a typical error of 1.1 is not reached
+        reach one of two goals
         The compared structures are the four structures
     """,
 )
@@ -159,20 +158,26 @@ def first_errors():
     return f"{statistics.median(each['error'] for each in cases(METHODS[3])):.2f}"
 
 
-@page.says("is within 5 % of the fastest in {} of {} cases, and takes {} % more time than the fastest on average. The goals were 95 % of "
-           "the cases and a mean regret of at most 1.02. Of the {} cases outside, {} are `laplacian` and {} is `taubin` on the scan of "
-           "99,994 triangles (regret {}).")
+@page.says("The structure that a recorded workload names is within 5 % of the fastest in {} of {} cases, and takes {} % more time than "
+           "the fastest on average. The goals were 95 % of the cases and a mean regret of at most 1.02. The {} cases outside are "
+           "`geodesics` and `feature-lines`, with a regret of at most {}.")
 def recorded():
     method = "recorded workload"
     mean = statistics.fmean(regrets(method))
-    data.require(within(method) < 0.95 * len(cases(method)) and mean > 1.02, "a goal is reached")
-    missed = [row for row in data.document(DATA) if compared(row, method)["regret"] > EQUAL]
-    laplacian = sum(row["program"] == "laplacian" for row in missed)
-    taubin = [row["mesh"] for row in missed if row["program"] == "taubin"]
-    data.require(taubin == ["koala"], f"taubin is wrong on {taubin}")
-    regret = compared(case("koala", "taubin"), method)["regret"]
-    return (str(within(method)), str(len(cases(method))), f"{100 * (mean - 1):.1f}", str(len(missed)), str(laplacian), str(len(taubin)),
-            f"{regret:.2f}")
+    data.require(within(method) < 0.95 * len(cases(method)) and mean <= 1.02, "other goals are reached")
+    missed = {row["program"] for row in data.document(DATA) if compared(row, method)["regret"] > EQUAL}
+    data.require(missed == {"geodesics", "feature-lines"}, f"the programs outside are {missed}")
+    outside = len(cases(method)) - within(method)
+    return (str(within(method)), str(len(cases(method))), f"{100 * (mean - 1):.1f}", str(outside), f"{max(regrets(method)):.2f}")
+
+
+@page.says("The structure that a trace names is within 5 % of the fastest in {} of {} cases, and takes {} % more time on average.")
+def traces():
+    typical = {method: statistics.median(each["error"] for each in cases(method)) for method in METHODS}
+    data.require(typical["recorded workload"] < typical["trace"], f"typical errors: {typical}")
+    data.require(within("trace") > within("recorded workload"), "traces do not choose better")
+    mean = statistics.fmean(regrets("trace"))
+    return str(within("trace")), str(len(cases("trace"))), f"{100 * (mean - 1):.1f}"
 
 
 @page.says("In `laplacian` on the ball, face-vertex takes {} times the time of the corner table, and the recorded workload predicts {}.")
@@ -184,25 +189,18 @@ def ball_laplacian():
     return quotient(found["ns"]), quotient(found["predicted_ns"]["recorded workload"])
 
 
-@page.says("The ratios that traces predict are nearer to the measured ratios than those of recorded workloads")
-def traces():
-    typical = {method: statistics.median(each["error"] for each in cases(method)) for method in METHODS}
-    data.require(1.1 < typical["trace"] < typical["recorded workload"], f"typical errors: {typical}")
-    data.require(within("trace") <= within("recorded workload"), "traces choose better")
-
-
-@page.says("The worst cases are `geodesics` on the torus in random order (regret {}) and `remesh` on the terrain (regret {}).")
+@page.says("The worst cases are `remesh` on the terrain (regret {}) and `taubin` on the terrain (regret {}).")
 def worst_traces():
     regret = {(row["program"], row["mesh"]): compared(row, "trace")["regret"] for row in data.document(DATA)}
     worst = sorted(regret, key=regret.get, reverse=True)[:2]
-    data.require(worst == [("geodesics", "torus-shuffled"), ("remesh", "plane_holes")], f"the worst cases are {worst}")
+    data.require(worst == [("remesh", "plane_holes"), ("taubin", "plane_holes")], f"the worst cases are {worst}")
     return tuple(f"{regret[case]:.2f}" for case in worst)
 
 
-@page.says("In `laplacian` on the scan of 99,994 triangles, half-edge takes {} times the time of the corner table, and the "
+@page.says("In `laplacian` on the torus in random order, half-edge takes {} times the time of the corner table, and the "
            "recorded workload predicts {}.")
 def laplacian():
-    found = case("koala", "laplacian")
+    found = case("torus-shuffled", "laplacian")
     quotient = lambda times: f"{times['half-edge'] / times['corner-table']:.2f}"
     return quotient(found["ns"]), quotient(found["predicted_ns"]["recorded workload"])
 
