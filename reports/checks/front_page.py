@@ -24,7 +24,7 @@ page = Claims(
         has the six structures
         eight example programs
         seven [subdivision]
-        the fifteen [edits]
+        the sixteen [edits]
         a ratio is the quotient of two times
         intervals are 95 %
         with 95 % intervals

@@ -168,6 +168,20 @@ impl<M: Representation> HandleMap<M> {
         let ring = mesh.one_ring(self.vertex(v))?;
         Some(ring.map(|u| self.vertex_id(u)).collect())
     }
+
+    pub(crate) fn ring_with_faces<Q>(
+        &self,
+        mesh: &Q,
+        v: VertexId,
+    ) -> Option<Vec<(VertexId, Option<FaceId>)>>
+    where
+        Q: MeshQuery<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
+    {
+        let ring = mesh.one_ring_with_faces(self.vertex(v))?;
+        let ids =
+            |(u, f): (M::Vertex, Option<M::Face>)| (self.vertex_id(u), f.map(|f| self.face_id(f)));
+        Some(ring.map(ids).collect())
+    }
 }
 
 fn lookup<T: Copy>(entry: Option<&T>, structure: &str, key: impl Debug) -> T {

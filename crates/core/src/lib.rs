@@ -41,7 +41,7 @@
 //!   [`Editable`] if they can, [`Compact`] if they cannot.
 //! - [`Holes`]: the rows of deleted elements; [`NewRows`]: the new rows of all other elements after
 //!   the rows of deleted elements are removed.
-//! - [`check_rows`], [`check_corners`], [`check_cut`]: checks that an edit is allowed.
+//! - [`check_rows`], [`check_corners`], [`check_cut`], [`faces_once`], [`check_fans_without`]: checks that an edit is allowed.
 //! - [`mesh_tables!`]: the code that treats all tables of a structure alike, from a list of the
 //!   tables; [`vertex_rows!`], [`edge_rows!`] and [`face_rows!`]: the lists of elements that are rows.
 //! - [`invariant_checks`]: checks of invariants that several structures share.
@@ -124,7 +124,7 @@ pub use traits::representation::{QueryCost, Relation, Representation};
 pub use traits::split::Split;
 
 // For authors of structures.
-pub use edit::edit_check::{check_corners, check_cut, check_rows};
+pub use edit::edit_check::{check_corners, check_cut, check_fans_without, check_rows, faces_once};
 pub use edit::edit_log::uses_reports;
 pub use edit::new_rows::NewRows;
 pub use handles::distinct::{Distinct, DistinctWalk};

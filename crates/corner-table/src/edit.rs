@@ -34,7 +34,8 @@ mod tests;
 
 use sixfold_core::{
     Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_CORNERS, MAX_ROWS, MeshEdit, Point,
-    Probe, QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
+    Probe, QueryCost, Representation, RowId, Slot, VertexId, check_fans_without, check_rows,
+    faces_once, row,
 };
 
 use crate::EditableCornerTable;
@@ -97,6 +98,17 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal> {
         self.remove_triangle(f, log)
+    }
+
+    fn remove_faces_logged(
+        &mut self,
+        faces: &[FaceId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal> {
+        let gone = faces_once(faces, |f| self.check_face(f))?;
+        check_fans_without(self, &gone)?;
+        self.remove_triangles(&gone, log);
+        Ok(())
     }
 
     /// O(valence).

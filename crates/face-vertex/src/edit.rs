@@ -17,7 +17,7 @@ mod tests;
 
 use sixfold_core::{
     Edit, EditError, EditLog, Editable, FaceId, HoleSet, MeshEdit, Pair, Point, Probe, QueryCost,
-    Refusal, ShortVec, VertexId, check_corners, check_cut, row, uses_reports,
+    Refusal, ShortVec, VertexId, check_corners, check_cut, faces_once, row, uses_reports,
 };
 
 use self::corners::{corners_from, sides, third_corner};
@@ -87,6 +87,16 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
             self.report_removed(sides(&face), log);
         }
         Ok(())
+    }
+
+    fn remove_faces_logged(
+        &mut self,
+        faces: &[FaceId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        let gone = faces_once(faces, |f| self.corners_of_face(f).map(drop))?;
+        gone.into_iter()
+            .try_for_each(|f| self.remove_face_logged(f, log))
     }
 
     fn remove_vertex_logged(

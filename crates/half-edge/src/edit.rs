@@ -12,7 +12,8 @@ mod tests;
 
 use sixfold_core::{
     EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, MeshEdit,
-    MeshQuery, Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
+    MeshQuery, Point, Probe, QueryCost, Slot, VertexId, check_fans_without, check_rows, faces_once,
+    row,
 };
 
 use crate::EditableHalfEdgeMesh;
@@ -69,6 +70,19 @@ impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
         let first = self.check_face(f)?;
         self.check_removable(first)?;
         self.unlink_face(f, first, log);
+        Ok(())
+    }
+
+    fn remove_faces_logged(
+        &mut self,
+        faces: &[FaceId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal> {
+        let gone = faces_once(faces, |f| self.check_face(f))?;
+        check_fans_without(self, &gone)?;
+        for f in gone {
+            self.unlink_face(f, *self.first.read(f.index()), log);
+        }
         Ok(())
     }
 

@@ -61,6 +61,15 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.remove_face(f, log)
     }
 
+    /// Takes O(n log n) time for n faces, and one scan if the log records edits.
+    fn remove_faces_logged(
+        &mut self,
+        faces: &[FaceId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.faces.remove_faces(faces, log)
+    }
+
     /// Takes one scan.
     fn split_edge_logged(
         &mut self,

@@ -1,6 +1,7 @@
 //! Reads and writes meshes: STL, PLY, OFF, glTF and Wavefront OBJ, with the numbering of the file.
 //!
-//! Start with [`read()`] or [`read_from`], which recognise the format by the content.
+//! [`load`] reads a file into a structure, and [`save`] writes a structure to a file. With more control:
+//! [`read()`] and [`read_from`] recognise the format by the content.
 //! [`FileMesh::into_polygons`] returns the mesh from which structures are built, and the faces that
 //! it left out. [`write()`] writes a mesh and returns what the format cannot keep.
 //! Sharp edges are read from OBJ ([`FileMesh::creases`]) or from a file of their own:
@@ -142,6 +143,7 @@ mod format;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod lines;
+mod load;
 mod narrowing;
 mod notice;
 mod number;
@@ -163,6 +165,7 @@ pub use error::ReadError;
 pub use faults::{GltfFault, PlyHeaderFault, TagFault};
 pub use file_mesh::{FileMesh, LeftOut, LeftOutReason, ShortFace};
 pub use format::Format;
+pub use load::{LoadError, load, save};
 pub use narrowing::Narrowing;
 pub use notice::{IgnoredKind, Notice};
 pub use obj::parse_obj;

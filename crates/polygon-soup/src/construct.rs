@@ -78,7 +78,7 @@ impl<E: Editing> Representation for PolygonSoup<E> {
     }
 }
 
-impl<E: Editing> MeshMove for PolygonSoup<E> {
+impl<E: Editing, P: Probe> MeshMove for PolygonSoup<E, P> {
     /// Moves every corner to the position that the map has for its vertex. Takes O(corners)
     /// expected time.
     fn set_positions_logged(
@@ -108,7 +108,7 @@ impl<E: Editing> MeshMove for PolygonSoup<E> {
     }
 }
 
-impl<E: Editing> PolygonSoup<E> {
+impl<E: Editing, P: Probe> PolygonSoup<E, P> {
     /// Reports the new handles of vertices and edges when the corners move to `moved`; O(corners)
     /// expected.
     fn report_moves(&self, moved: &[Point], log: &mut impl EditLog<Self>) {

@@ -2,14 +2,21 @@
 
 use proptest::prelude::*;
 use sixfold_conformance::strategy::any_mesh;
-use sixfold_core::{EdgeId, FaceId, MeshEdit, MeshQuery, PolygonMesh, Representation, VertexId};
+use sixfold_core::{
+    EdgeId, FaceId, MeshEdit, MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Relation,
+    Representation, VertexId,
+};
 use sixfold_half_edge::{EditableHalfEdgeMesh, HalfEdgeMesh};
 use sixfold_indexed_face_set::IndexedFaceSet;
 use sixfold_polygon_soup::PolygonSoup;
-use sixfold_relation_table::Numbering;
+use sixfold_relation_table::{Numbering, RelationTables};
 
 fn check_tables<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
     let numbers = Numbering::new(mesh);
+    let tables = RelationTables::new(mesh, &Relation::ALL).expect("few items");
+    prop_assert_eq!(tables.positions(), numbers.positions());
+    prop_assert_eq!(tables.edge_count(), mesh.edge_count());
+    prop_assert_eq!(tables.face_count(), mesh.face_count());
     macro_rules! check_table {
         ($relation:ident, $all:ident, $from:ident, $to:ident) => {
             let table = numbers.$relation().expect("few items");
@@ -26,6 +33,8 @@ fn check_tables<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
                     element
                 );
                 prop_assert_eq!(table.row(number), row);
+                let asked: Vec<_> = tables.$relation(number).into_iter().collect();
+                prop_assert_eq!(row, &asked[..]);
                 prop_assert_eq!(number, numbers.$from(element));
                 prop_assert_eq!(number.index(), at);
             }
@@ -102,4 +111,46 @@ fn tables_store_no_offsets_if_all_rows_have_one_length() {
             .expect("empty")
             .is_empty()
     );
+}
+
+#[test]
+fn vertices_of_tables_move() {
+    let mesh = HalfEdgeMesh::from_polygons(&sixfold_shapes::cube()).expect("a manifold");
+    let mut tables = RelationTables::new(&mesh, &[Relation::FaceVertices]).expect("small");
+    let mut moved = tables.vertex_map(Point::ZERO);
+    for v in tables.vertices() {
+        moved[v] = 2.0 * tables.position(v);
+    }
+    tables
+        .set_positions(&moved)
+        .expect("as many positions as vertices");
+    let v = VertexId::new(3);
+    assert_eq!(tables.position(v), 2.0 * mesh.position(v));
+    tables.set_position(v, Point::ONE);
+    assert_eq!(tables.position(v), Point::ONE);
+    let others = IndexedFaceSet::from_polygons(&sixfold_shapes::octahedron()).expect("any mesh");
+    let others = others.vertex_map(Point::ZERO);
+    let refused = MoveError::OtherMesh {
+        given: 6,
+        vertices: 8,
+    };
+    assert_eq!(tables.set_positions(&others), Err(refused));
+    assert_eq!(tables.position(v), Point::ONE);
+    let contained = [7, 8].map(|v| tables.contains_vertex(VertexId::new(v)));
+    assert_eq!(contained, [true, false]);
+    assert!(tables.contains_edge(EdgeId::new(11)) && !tables.contains_edge(EdgeId::new(12)));
+    assert!(tables.contains_face(FaceId::new(5)) && !tables.contains_face(FaceId::new(6)));
+    assert_eq!(
+        tables.bytes(),
+        8 * 12 + 6 * 4 * 4,
+        "positions, and four corners of each face"
+    );
+}
+
+#[test]
+#[should_panic(expected = "there is no table of vertex_faces: add `Relation::VertexFaces`")]
+fn a_relation_without_a_table_is_named() {
+    let mesh = HalfEdgeMesh::from_polygons(&sixfold_shapes::cube()).expect("a manifold");
+    let tables = RelationTables::new(&mesh, &[Relation::FaceVertices]).expect("small");
+    let _ = tables.vertex_faces(VertexId::new(0)).count();
 }

@@ -330,6 +330,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             title: format!("{} on {}", pick.workload.name, names.join(", ")),
             facts: pick.workload.summary.trim().to_owned(),
             sentences: [&pick.sentences[..], &pick.warnings].concat(),
+            code: pick.usage.clone(),
             figures: ranked.into_iter().chain(curves).collect(),
             ..Section::default()
         });

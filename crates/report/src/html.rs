@@ -217,6 +217,7 @@ fn lab_section(place: usize, lab: &Section) -> Markup {
             @let (first, more) = lab.sentences.split_at(lab.sentences.len().min(SHOWN));
             (list(first))
             @if !more.is_empty() { details { summary { "More on the results" } (list(more)) } }
+            @if !lab.code.is_empty() { pre { (lab.code.join("\n")) } }
             @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
             @for table in &lab.tables { (table_section(table, "h3")) }
         }

@@ -117,6 +117,8 @@ pub struct Section {
     pub summary: Option<Summary>,
     /// Sentences that state the main results.
     pub sentences: Vec<String>,
+    /// Lines of commands and code that use the result.
+    pub code: Vec<String>,
     /// The figures of the section.
     pub figures: Vec<Figure>,
     /// The tables of the section, which follow the figures.

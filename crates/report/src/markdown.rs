@@ -73,6 +73,9 @@ impl ReportPage {
                 escape(&section.facts)
             );
             write_list(&mut text, &section.sentences);
+            if !section.code.is_empty() {
+                let _ = writeln!(text, "```text\n{}\n```\n", section.code.join("\n"));
+            }
             if let Some(summary) = &section.summary {
                 write_table(&mut text, &summary.table());
             }

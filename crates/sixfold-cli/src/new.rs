@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold_study::packages;
+use sixfold_study::usage;
 
 use crate::arguments::New;
 use crate::failure::Failure;
@@ -55,8 +55,8 @@ pub(crate) fn run(arguments: &New) -> Result<ExitCode, Failure> {
 /// Returns the path of the repository as a text between quotes in TOML.
 fn checkout(given: Option<&Path>) -> Result<String, Failure> {
     let found = match given {
-        Some(folder) => packages::checkout_at(folder),
-        None => packages::checkout(),
+        Some(folder) => usage::checkout_at(folder),
+        None => usage::checkout(),
     };
     let found = found.ok_or_else(|| match given {
         Some(folder) => Failure::usage(format!(

@@ -278,10 +278,42 @@ pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
         text.print_line(&ranking(report));
         text.print_line("");
     }
+    if report.program.is_some() && !report.mismatches.is_empty() {
+        text.print_line(&results(report));
+        text.print_line("");
+    }
     text.print_list("- ", reasons);
     let excluded = report.excluded.iter();
     let excluded = excluded.map(|e| format!("{} is excluded: {}.", e.backend, e.reason));
     text.print_list("- ", excluded);
+    if !report.usage.is_empty() {
+        text.print_line("\nTo use it in your package:");
+        for line in &report.usage {
+            text.print_line(&format!("  {line}"));
+        }
+    }
+}
+
+/// Returns the table of the results of a program that differ, each with the part by which it differs from the result
+/// of the fastest backend that agrees with the others.
+fn results(report: &PickReport) -> String {
+    let differs = |ranked: &Ranked| report.mismatches.contains(&ranked.backend);
+    let expected = report.ranking.iter().find(|ranked| !differs(ranked));
+    let expected = expected.and_then(|ranked| ranked.result);
+    let rows = || report.ranking.iter();
+    let names = Column::words("", rows().map(|ranked| ranked.backend.clone()));
+    let values = rows().map(|ranked| ranked.result.map_or("–".into(), |x| format!("{x:?}")));
+    let apart = rows().map(|ranked| match (ranked.result, expected) {
+        (Some(x), Some(expected)) if differs(ranked) => {
+            format!("{:.1e}", (x - expected).abs() / expected.abs().max(x.abs()))
+        }
+        _ => String::new(),
+    });
+    let columns = [
+        Column::figures("result", values),
+        Column::figures("differs by", apart),
+    ];
+    column_table(&names, &columns)
 }
 
 /// Returns the table of backends, the fastest first, and its legend.

@@ -31,7 +31,8 @@ fn the_answer_has_a_ranking_with_reasons() {
         "pays: number of operations after which",
         "relation-tables: flat tables of only the relations in the mix, made from ",
         "For mine, ",
-        "To use `sixfold_",
+        "To use it in your package: cargo add sixfold",
+        "= io::load(\"grid.obj\")?;",
     ] {
         let words: Vec<&str> = run.stdout.split_whitespace().collect();
         assert!(words.join(" ").contains(part), "{part}: {}", run.stdout);

@@ -20,7 +20,13 @@ fn programs_are_measured_and_written() {
         "r.json",
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    for part in ["grid", "144 vertices", "geodesics", "regions", "sixfold-"] {
+    for part in [
+        "grid",
+        "144 vertices",
+        "geodesics",
+        "regions",
+        "cargo add sixfold",
+    ] {
         assert!(run.stdout.contains(part), "`{part}` in {run:?}");
     }
     let results: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");

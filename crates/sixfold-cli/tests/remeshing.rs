@@ -448,7 +448,7 @@ fn edits_writes_json() {
     let run = run_ok(&sixfold, &["edits", "--json", "-"]);
     let rows: Value = serde_json::from_str(&run.stdout).expect("JSON");
     let rows = rows.as_array().expect("a list");
-    assert_eq!(rows.len(), 15);
+    assert_eq!(rows.len(), 16);
     for row in rows {
         let backends = row["backends"].as_array().expect("a list");
         let names: Vec<_> = backends.iter().map(|b| b["backend"].as_str()).collect();

@@ -104,9 +104,11 @@ fn a_workload_with_edits_recommends_an_editable_type() {
     for workload in ["decimation", "remeshing", "modelling"] {
         let pick = ["pick", "ball.obj", "--workload", workload, "--rounds", "2"];
         let said = run_ok(&sixfold, &pick).stdout.replace('\n', " ");
-        let to_use = said.split("To use `").nth(1).expect("a type");
-        let name = to_use.split('`').next().expect("a name");
-        assert!(name.contains("::Editable"), "{workload}: {name}");
+        let to_use = said.split("To use it").nth(1).expect("the lines");
+        assert!(
+            to_use.contains("let mut mesh: Editable"),
+            "{workload}: {to_use}"
+        );
     }
     let needs = ["pick", "ball.obj", "--needs", "edit", "--rounds", "2"];
     let said = run_ok(&sixfold, &needs).stdout.replace("\n  ", " ");

@@ -6,7 +6,7 @@
 //!
 //! | task | start at |
 //! |---|---|
-//! | [load a mesh](#load-a-mesh) | [`io::read`], [`PolygonMesh::new`], [`shapes`] |
+//! | [load a mesh](#load-a-mesh), save it | [`io::load`], [`io::save`], [`io::read`], [`PolygonMesh::new`], [`shapes`] |
 //! | [walk around a vertex](#walk-around-a-vertex) | [`MeshQuery::vertex_vertices`], [`MeshQuery::one_ring`] |
 //! | [flip an edge](#flip-an-edge) | [`MeshEdit::flip_edge`] |
 //! | [subdivide](#subdivide) | [`subdivision::subdivide_native`], [`subdivision::Scheme`] |
@@ -21,13 +21,31 @@
 //! | [accept only structures with local queries](#require-local-queries) | [`LocalQueries`] |
 //! | [walk from side to side](#walk-in-order) | [`OrientedWalk`] |
 //! | read the topology of a mesh | [`Facts`] |
+//! | find what a call of CGAL, OpenMesh, libigl, pmp, geometry-central or trimesh is called here | [`coming_from`] |
+//! | remove many faces | [`MeshEdit::retain_faces`] |
+//! | query flat tables of a few relations | [`RelationTables`] |
 //!
 //! # Load a mesh
 //!
 //! ```no_run
 //! use sixfold::{HalfEdgeMesh, io};
 //!
-//! let (polygons, left_out) = io::read("bunny.ply")?.into_polygons();
+//! let mesh: HalfEdgeMesh = io::load("bunny.ply")?;
+//! io::save("bunny.obj", &mesh)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The long form tells what was ignored and left out, takes options, and keeps the mesh if the structure
+//! cannot hold it:
+//!
+//! ```no_run
+//! use sixfold::{HalfEdgeMesh, io};
+//!
+//! let file = io::read("bunny.ply")?;
+//! for notice in &file.notices {
+//!     eprintln!("{notice}");
+//! }
+//! let (polygons, left_out) = file.into_polygons();
 //! println!("{polygons}; {} faces left out", left_out.len());
 //! let mesh = HalfEdgeMesh::try_from(&polygons)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -170,7 +188,21 @@
 //! [`structures!`] lists all structures, and [`visit`] selects one structure at run time.
 //!
 //! If a program queries a few relations many times and does not change the connectivity, make flat
-//! tables of these relations from any structure, with the crate `sixfold-relation-table`.
+//! tables of these relations from any structure. [`RelationTables`] have the same queries:
+//!
+//! ```
+//! use sixfold::prelude::*;
+//!
+//! fn mean_valence<M: MeshQuery>(mesh: &M) -> f64 {
+//!     let neighbours: usize = mesh.vertices().map(|v| mesh.vertex_vertices(v).count()).sum();
+//!     neighbours as f64 / mesh.vertex_count() as f64
+//! }
+//!
+//! let mesh = FaceVertexMesh::from_polygons(&sixfold::shapes::icosahedron())?;
+//! let tables = RelationTables::new(&mesh, &[Relation::VertexVertices])?;
+//! assert_eq!(mean_valence(&tables), mean_valence(&mesh));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Require local queries
 //!
@@ -289,6 +321,12 @@ pub use sixfold_polygon_soup::{self as polygon_soup, EditablePolygonSoup, Polygo
 #[doc(inline)]
 pub use sixfold_winged_edge::{self as winged_edge, EditableWingedEdgeMesh, WingedEdgeMesh};
 
+// Flat tables of relations, made from a structure.
+#[doc(inline)]
+pub use sixfold_relation_table::{
+    self as relation_table, Numbering, RelationTable, RelationTables, TabulationError,
+};
+
 // Algorithms and files.
 #[doc(inline)]
 pub use sixfold_io as io;
@@ -307,6 +345,8 @@ pub use sixfold_subdivision as subdivision;
 
 #[cfg(feature = "algorithms")]
 pub mod algorithms;
+#[doc = include_str!("coming_from.md")]
+pub mod coming_from {}
 mod structure_list;
 mod support;
 
@@ -327,7 +367,7 @@ pub mod prelude {
     pub use crate::{
         CornerTable, EditableCornerTable, EditableFaceVertexMesh, EditableHalfEdgeMesh,
         EditableIndexedFaceSet, EditablePolygonSoup, EditableWingedEdgeMesh, FaceVertexMesh,
-        HalfEdgeMesh, IndexedFaceSet, PolygonSoup, WingedEdgeMesh,
+        HalfEdgeMesh, IndexedFaceSet, PolygonSoup, Relation, RelationTables, WingedEdgeMesh,
     };
     pub use sixfold_core::prelude::*;
 }

@@ -34,11 +34,11 @@ mod external;
 mod inspect;
 mod labs;
 mod launches;
-pub mod packages;
 mod refusal;
 #[cfg(test)]
 mod results_tests;
 mod runner;
+pub mod usage;
 
 pub use engine::effort::Effort;
 pub use engine::heap::free_memory;

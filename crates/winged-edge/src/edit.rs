@@ -9,7 +9,7 @@
 
 use sixfold_core::{
     EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, Point, Probe, QueryCost, Refusal, Slot,
-    VertexId,
+    VertexId, check_fans_without, faces_once,
 };
 
 use crate::mesh::WingedEdgeMesh;
@@ -71,6 +71,19 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<(), Refusal<Self>> {
         self.remove(f, log)
+    }
+
+    fn remove_faces_logged(
+        &mut self,
+        faces: &[FaceId],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        let gone = faces_once(faces, |f| self.check_face(f))?;
+        check_fans_without(self, &gone)?;
+        for f in gone {
+            self.unlink_face(f, log);
+        }
+        Ok(())
     }
 
     /// O(n) if the faces of `v` are triangles, otherwise O(n log n), for n corners of these faces.

@@ -1,6 +1,6 @@
 //! Jobs that a backend (such as a mesh data structure) runs and times, and the results of jobs.
 
-use sixfold::QueryCost;
+use sixfold::{QueryCost, Relation};
 
 use crate::operation::Operation;
 use crate::series::Series;
@@ -176,6 +176,10 @@ pub trait TimedBackend {
     fn costs(&self) -> [QueryCost; 9];
     /// Returns the number of input vertices that were merged with other vertices.
     fn merged_vertices(&self) -> usize;
+    /// Returns the relations of which the backend consists; empty for a structure.
+    fn tabulated(&self) -> Vec<Relation> {
+        Vec::new()
+    }
     /// Returns the bytes of the tables of the backend.
     fn bytes(&self) -> usize;
     /// Builds the backend again from the same polygons at other memory addresses. The times of some

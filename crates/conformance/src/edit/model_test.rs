@@ -421,9 +421,11 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
 fn euler_step(action: &Action) -> Option<isize> {
     match action.edit() {
         Edit::AddVertex => Some(1),
-        Edit::AddFace | Edit::RemoveFace | Edit::RemoveVertex | Edit::RemoveIsolatedVertices => {
-            None
-        }
+        Edit::AddFace
+        | Edit::RemoveFace
+        | Edit::RemoveFaces
+        | Edit::RemoveVertex
+        | Edit::RemoveIsolatedVertices => None,
         _ => Some(0),
     }
 }

@@ -25,7 +25,7 @@ pub struct Step {
 /// `Compact`, `AddVertex` and `SetPosition` are less frequent than other edits.
 pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {
-        Edit::RemoveVertex | Edit::RemoveIsolatedVertices | Edit::Compact => 1,
+        Edit::RemoveVertex | Edit::RemoveFaces | Edit::RemoveIsolatedVertices | Edit::Compact => 1,
         Edit::RemoveFace | Edit::AddVertex | Edit::SetPosition => 2,
         _ => 4,
     };
@@ -58,6 +58,9 @@ impl Step {
                 corners: self.new_face(model)?,
             },
             Edit::RemoveFace => Action::RemoveFace { f: face()? },
+            Edit::RemoveFaces => Action::RemoveFaces {
+                faces: self.several_faces(model)?,
+            },
             Edit::RemoveVertex => Action::RemoveVertex { v: vertex()? },
             Edit::RemoveIsolatedVertices => Action::RemoveIsolatedVertices {},
             Edit::SplitEdge => Action::SplitEdge { e: ends()?, at },
@@ -154,6 +157,30 @@ impl Step {
             _ => (side(q), side(q + 1 + r % 5)),
         };
         Action::SplitVertex { v, left, right, at }
+    }
+
+    /// Returns neighbouring faces, faces at a vertex, or faces at random. One of them may be there twice.
+    fn several_faces(&self, model: &Model) -> Option<Vec<usize>> {
+        let [p, q, r, s] = self.picks.map(usize::from);
+        let all = all_faces(model);
+        let first = pick(&all, p)?;
+        let corners = model.face(first)?;
+        let shares = |f: &usize, count: usize| {
+            let face = model.face(*f).unwrap_or_default();
+            face.iter().filter(|v| corners.contains(v)).count() >= count
+        };
+        let mut faces: Vec<usize> = match s % 4 {
+            0 => all.iter().copied().filter(|f| shares(f, 2)).collect(),
+            1 => all.iter().copied().filter(|f| shares(f, 1)).collect(),
+            2 => all
+                .iter()
+                .copied()
+                .filter(|f| f % (2 + q % 3) == 0)
+                .collect(),
+            _ => vec![first, pick(&all, q)?, pick(&all, r)?],
+        };
+        faces.push(first);
+        Some(faces)
     }
 
     /// Returns the corners of a new face, which is often legal.

@@ -144,6 +144,26 @@ pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
             "{}: one_ring of {v} is {got:?}, expected {expected:?} (ring, closed)",
             M::NAME
         );
+        let with_faces = subject.handles.ring_with_faces(&subject.mesh, v);
+        let ring = with_faces.as_ref().map(|ring| ring.iter().map(|&(w, _)| w));
+        assert_eq!(
+            ring.map(Iterator::collect::<Vec<_>>),
+            got,
+            "{}: one_ring_with_faces of {v}",
+            M::NAME
+        );
+        let with_faces = with_faces.unwrap_or_default();
+        for (i, &(w, face)) in with_faces.iter().enumerate() {
+            let has_side = |f: &FaceId| {
+                let corners = subject.oracle.corners(*f);
+                let next = corners.iter().cycle().skip(1);
+                corners.iter().zip(next).any(|ends| ends == (&v, &w))
+            };
+            let expected = subject.oracle.faces().find(has_side);
+            let context = format!("{}: the face after {w} around {v}", M::NAME);
+            assert_eq!(face, expected, "{context}");
+            assert!(face.is_some() || i + 1 == with_faces.len(), "{context}");
+        }
     }
 }
 
@@ -187,8 +207,46 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
             mesh.contains_edge(handle),
             "{name}: contains_edge of {edge}"
         );
+        let opposite = mesh.opposite_vertices(handle).map(|v| handles.vertex_id(v));
+        let mut opposite: Vec<VertexId> = opposite.collect();
+        opposite.sort_unstable();
+        let ends = oracle.answer(Relation::EdgeVertices, edge);
+        let mut expected = Vec::new();
+        for &f in oracle.answer(Relation::EdgeFaces, edge) {
+            let corners = oracle.answer(Relation::FaceVertices, f);
+            let third = corners.iter().filter(|v| !ends.contains(v));
+            expected.extend(
+                third
+                    .filter(|_| corners.len() == 3)
+                    .filter_map(|v| match v {
+                        Element::Vertex(v) => Some(*v),
+                        _ => None,
+                    }),
+            );
+        }
+        expected.sort_unstable();
+        assert_eq!(opposite, expected, "{name}: opposite_vertices of {edge}");
     }
     for f in oracle.faces() {
+        let edges = oracle.answer(Relation::FaceEdges, Element::Face(f));
+        let got = mesh.is_boundary_face(handles.face(f));
+        let expected = edges.iter().any(is_boundary);
+        assert_eq!(got, expected, "{name}: is_boundary_face of {f}");
+        for g in oracle.faces() {
+            let shared = mesh.common_edge(handles.face(f), handles.face(g));
+            let shared = shared.map(|e| handles.edge_id(e));
+            let others = oracle.answer(Relation::FaceEdges, Element::Face(g));
+            let is_common = |e: &Element| f != g && edges.contains(e) && others.contains(e);
+            assert_eq!(
+                shared.is_some(),
+                edges.iter().any(is_common),
+                "{name}: common_edge of {f} and {g} is {shared:?}"
+            );
+            assert!(
+                shared.is_none_or(|e| is_common(&e)),
+                "{name}: common_edge of {f} and {g} is {shared:?}"
+            );
+        }
         let (handle, corners) = (handles.face(f), oracle.corners(f));
         assert_eq!(mesh.degree(handle), corners.len(), "{name}: degree of {f}");
         assert!(mesh.contains_face(handle), "{name}: contains_face of {f}");

@@ -193,6 +193,38 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         assert_eq!(mesh.cw_side(s), cw, "{name}: cw_side of {s:?}");
         let ccw = mesh.twin_side(expected.prev);
         assert_eq!(mesh.ccw_side(s), ccw, "{name}: ccw_side of {s:?}");
+        // The next side along a boundary starts at the end of the side, and leads back.
+        let is_boundary = |ends| self.twin(ends).is_none();
+        let [next, prev] = [mesh.next_boundary_side(s), mesh.prev_boundary_side(s)];
+        let context = format!("{name}: {s:?} along a boundary, from {prev:?} to {next:?}");
+        if !is_boundary(expected.ends) {
+            assert_eq!([next, prev], [None; 2], "{context}");
+            return;
+        }
+        for (found, back, [arriving, leaving]) in [
+            (
+                next.and_then(|next| mesh.prev_boundary_side(next)),
+                next,
+                [Some(s), next],
+            ),
+            (
+                prev.and_then(|prev| mesh.next_boundary_side(prev)),
+                prev,
+                [prev, Some(s)],
+            ),
+        ] {
+            assert_eq!(found, Some(s), "{context}");
+            assert!(
+                back.is_some_and(|side| mesh.twin_side(side).is_none()),
+                "{context}"
+            );
+            let ends = arriving.map(|side| mesh.side_target(side));
+            assert_eq!(
+                ends,
+                leaving.map(|side| mesh.side_origin(side)),
+                "{context}"
+            );
+        }
     }
 
     /// Returns the side in the opposite direction, if there is exactly one side in each direction.

@@ -92,6 +92,10 @@ impl<M: MeshEdit> EditArguments for AtFace<'_, M> {
         Ok(self.face)
     }
 
+    fn faces(&mut self) -> Result<Vec<M::Face>, Infallible> {
+        Ok(vec![self.face])
+    }
+
     fn position(&mut self) -> Result<Point, Infallible> {
         Ok(self.at)
     }

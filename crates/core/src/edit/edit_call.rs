@@ -30,6 +30,7 @@ pub type EditOf<M> =
 /// | `add_vertex` | position |
 /// | `add_face` | three or more vertices |
 /// | `remove_face` | face |
+/// | `remove_faces` | one or more faces |
 /// | `remove_vertex` | vertex |
 /// | `remove_isolated_vertices`, `compact` | none |
 /// | `split_edge`, `bisect_edge` | edge; position |
@@ -86,6 +87,7 @@ pub trait EditArguments {
     fn corners(&mut self) -> Result<[Self::Vertex; 2], Self::Error>;
     fn edge(&mut self) -> Result<Self::Edge, Self::Error>;
     fn face(&mut self) -> Result<Self::Face, Self::Error>;
+    fn faces(&mut self) -> Result<Vec<Self::Face>, Self::Error>;
     fn position(&mut self) -> Result<Point, Self::Error>;
     /// Returns the position of a vertex that is made or merged.
     fn new_position(&mut self) -> Result<Self::Position, Self::Error>;
@@ -108,6 +110,9 @@ macro_rules! argument {
     (pass vertices $a:ident) => {
         $a
     };
+    (pass faces $a:ident) => {
+        $a
+    };
     (pass $kind:ident $a:ident) => {
         *$a
     };
@@ -122,6 +127,9 @@ macro_rules! argument {
     };
     (map vertices $a:ident $v:ident $e:ident $f:ident) => {
         $a.iter().map(&mut $v).collect::<Result<_, _>>()?
+    };
+    (map faces $a:ident $v:ident $e:ident $f:ident) => {
+        $a.iter().map(&mut $f).collect::<Result<_, _>>()?
     };
     (map corners $a:ident $v:ident $e:ident $f:ident) => {{
         let [a, b] = $a;
@@ -153,6 +161,9 @@ macro_rules! argument {
     };
     (visit vertices $a:ident $visit:ident) => {
         $a.iter().for_each(|v| $visit(EditArgument::Vertex(v)))
+    };
+    (visit faces $a:ident $visit:ident) => {
+        $a.iter().for_each(|f| $visit(EditArgument::Face(f)))
     };
     (visit corners $a:ident $visit:ident) => {
         $a.iter().for_each(|v| $visit(EditArgument::Vertex(v)))
@@ -533,6 +544,14 @@ impl EditArguments for Words<'_> {
         }
     }
 
+    fn faces(&mut self) -> Result<Vec<u32>, EditTextError> {
+        let mut faces = vec![self.face()?];
+        while self.words.clone().next().is_some() {
+            faces.push(self.face()?);
+        }
+        Ok(faces)
+    }
+
     fn position(&mut self) -> Result<Point, EditTextError> {
         self.next_position()?.ok_or_else(|| self.other_arguments())
     }
@@ -582,6 +601,10 @@ impl EditArguments for Example {
         Ok(0)
     }
 
+    fn faces(&mut self) -> Result<Vec<u32>, Infallible> {
+        Ok(vec![0, 1])
+    }
+
     fn position(&mut self) -> Result<Point, Infallible> {
         Ok(EXAMPLE)
     }
@@ -610,6 +633,8 @@ mod tests {
         for text in [
             "set_position v0 0.5,1,0",
             "add_face v0 v1 v2 v3 v4",
+            "remove_faces f2",
+            "remove_faces f2 f0 f1",
             "split_face f0 v0 v2",
             "collapse_edge v0-v1 v0",
             "collapse_edge v0-v1 v0 -0,1,0.1",
@@ -633,6 +658,8 @@ mod tests {
             ("flip_edge none", "write v3 for a vertex"),
             ("add_face v0 v1", "write `add_face v0 v1 v2`"),
             ("add_face v0 v1 none", "write v3 for a vertex"),
+            ("remove_faces", "write `remove_faces f0 f1`"),
+            ("remove_faces f0 v1", "write `remove_faces f0 f1`"),
             ("add_vertex", "write `add_vertex 0.5,1,0`"),
             ("add_vertex 0,0", "write 0.5,1,0"),
             ("add_vertex 0,0,nan", "write 0.5,1,0"),

@@ -3,10 +3,12 @@
 use std::fmt::Debug;
 
 use crate::edit::edit_error::EditError;
+use crate::edit::mesh_edit::Refusal;
 use crate::handles::handle::Handle;
 use crate::handles::limits;
 use crate::handles::row_id::FaceId;
 use crate::polygons::polygon_mesh::repeated;
+use crate::traits::query::MeshQuery;
 
 /// Checks that a table has at most `limit` rows, or fewer within `with_lower_limits`. `rows` is the
 /// number of rows after the edit.
@@ -48,6 +50,51 @@ pub fn check_corners<V: Handle, E: Debug, F: Debug>(
         Some(vertex) => Err(EditError::RepeatedVertex { vertex }),
         None => Ok(()),
     }
+}
+
+/// Returns `faces` sorted, each once. `check_face` must accept each face. O(n log n) for n faces.
+///
+/// # Errors
+///
+/// The first error of `check_face`.
+pub fn faces_once<F: Handle, E, T>(
+    faces: &[F],
+    check_face: impl Fn(F) -> Result<T, E>,
+) -> Result<Vec<F>, E> {
+    for &f in faces {
+        check_face(f)?;
+    }
+    let mut once = faces.to_vec();
+    once.sort_unstable();
+    once.dedup();
+    Ok(once)
+}
+
+/// Checks that the faces at each corner of `gone` would form at most one fan without `gone`, which is
+/// sorted. In a manifold, an open fan has two boundary edges.
+///
+/// O(n log n) for n corners of the faces and of the faces at these corners.
+///
+/// # Errors
+///
+/// [`EditError::SeveralFans`].
+pub fn check_fans_without<M: MeshQuery>(mesh: &M, gone: &[M::Face]) -> Result<(), Refusal<M>> {
+    let corners = gone.iter().flat_map(|&f| mesh.face_vertices(f));
+    let mut corners: Vec<M::Vertex> = corners.collect();
+    corners.sort_unstable();
+    corners.dedup();
+    for vertex in corners {
+        let becomes_boundary = |e: &M::Edge| {
+            let kept = mesh
+                .edge_faces(*e)
+                .filter(|f| gone.binary_search(f).is_err());
+            kept.count() == 1
+        };
+        if mesh.vertex_edges(vertex).filter(becomes_boundary).count() > 2 {
+            return Err(EditError::SeveralFans { vertex });
+        }
+    }
+    Ok(())
 }
 
 /// Checks that an edge between `ends` can cut a face with the given `corners`; returns the indices

@@ -15,6 +15,7 @@ macro_rules! for_each_edit {
             AddVertex "add_vertex" add_vertex_logged(at: position Point) -> vertex;
             AddFace "add_face" add_face_logged(corners: vertices Vec<V>) -> face;
             RemoveFace "remove_face" remove_face_logged(f: face F) -> nothing;
+            RemoveFaces "remove_faces" remove_faces_logged(faces: faces Vec<F>) -> nothing;
             RemoveVertex "remove_vertex" remove_vertex_logged(v: vertex V) -> nothing;
             RemoveIsolatedVertices "remove_isolated_vertices" remove_isolated_vertices_logged() -> count;
             SplitEdge "split_edge" split_edge_logged(e: edge E, at: new_position P) -> vertex;
@@ -61,12 +62,13 @@ impl Edit {
     };
 
     /// The costs of the edits in a structure that scans all faces, if the log ignores reports.
-    /// `add_face` reads O(1) rows. `remove_face`, `poke_face` and `split_face` read one face. All
-    /// other edits scan all faces. A structure can declare a different cost for an edit.
+    /// `add_face` reads O(1) rows. `remove_face`, `poke_face` and `split_face` read one face, and
+    /// `remove_faces` each of its faces. All other edits scan all faces. A structure can declare a different cost for an edit.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
         costs[Self::AddFace as usize] = Some(QueryCost::Constant);
         costs[Self::RemoveFace as usize] = Some(QueryCost::Local);
+        costs[Self::RemoveFaces as usize] = Some(QueryCost::Local);
         costs[Self::PokeFace as usize] = Some(QueryCost::Local);
         costs[Self::SplitFace as usize] = Some(QueryCost::Local);
         costs

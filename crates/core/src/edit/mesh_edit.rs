@@ -4,6 +4,7 @@ use crate::Point;
 use crate::edit::edit_error::EditError;
 use crate::edit::edit_kind::Edit;
 use crate::edit::edit_log::{EditLog, OldToNew};
+use crate::traits::mesh_move::MeshMove;
 use crate::traits::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 use crate::traits::representation::QueryCost;
 
@@ -75,13 +76,44 @@ macro_rules! edits {
 ///     mesh.bisect_edge(e, (a + b) / 2.0)
 /// }
 /// ```
+///
+/// # Editing while iterating
+///
+/// An iterator borrows the mesh, so a loop over a mesh cannot edit it. Collect the handles first, which
+/// takes O(elements) time and memory, and ask before each edit whether the element still exists:
+/// [`contains_edge`](MeshQuery::contains_edge) takes O(1) time if handles are rows or corners. Elements
+/// that the edits create are not in the list: repeat the loop until nothing changes, or push them into the
+/// list.
+///
+/// ```
+/// # use sixfold_core::{MeshEdit, MeshQuery};
+/// /// Collapses the edges that are shorter than `least`. Returns the number of collapses.
+/// fn collapse_short<M: MeshEdit>(mesh: &mut M, least: f32) -> usize {
+///     let mut done = 0;
+///     for e in mesh.edges().collect::<Vec<_>>() {
+///         if !mesh.contains_edge(e) {
+///             continue; // an earlier collapse removed the edge
+///         }
+///         let [a, b] = mesh.edge_vertices(e);
+///         let [p, q] = [mesh.position(a), mesh.position(b)];
+///         if p.distance(q) < least && mesh.collapse_edge(e, a, (p + q) / 2.0).is_ok() {
+///             done += 1;
+///         }
+///     }
+///     done
+/// }
+/// ```
+///
+/// The list of vertices and faces is the same with [`vertices`](MeshQuery::vertices) and
+/// [`faces`](MeshQuery::faces). If handles are not rows, a later edit may create an element with the handle
+/// of a removed one; then `contains_edge` finds the new element.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be edited",
     label = "this mesh is read-only",
     note = "a compact structure becomes editable by `into_editable()`; `from_polygons` of an editable \
             type, such as `EditableHalfEdgeMesh`, builds one"
 )]
-pub trait MeshEdit: MeshQuery + Sized {
+pub trait MeshEdit: MeshMove {
     /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the structure
     /// does not support the edit.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
@@ -139,6 +171,19 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// at a corner would form more than one fan.
         fn remove_face, remove_face_logged(f: Self::Face) -> Result<(), Refusal<Self>>;
 
+        /// Removes all of `faces`, as [`remove_face`](Self::remove_face) does with one of them. Only
+        /// the mesh without all of them must be legal: a strip of faces can be removed whose faces
+        /// cannot be removed one by one. A face that occurs twice counts once.
+        ///
+        /// Takes O(n log n) time for n corners of the faces and of the faces at these corners, or O(n)
+        /// if the structure holds non-manifold meshes.
+        ///
+        /// # Errors
+        ///
+        /// [`EditError::SeveralFans`] if the structure holds only manifolds and the remaining faces
+        /// at a vertex would form more than one fan.
+        fn remove_faces, remove_faces_logged(faces: &[Self::Face]) -> Result<(), Refusal<Self>>;
+
         /// Removes `v` and all its faces in one edit. [`remove_face`](Self::remove_face) describes
         /// the edges and vertices that are removed together with each face.
         ///
@@ -147,6 +192,36 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// [`EditError::SeveralFans`] if the structure holds only manifolds and the remaining faces
         /// at another vertex would form more than one fan.
         fn remove_vertex, remove_vertex_logged(v: Self::Vertex) -> Result<(), Refusal<Self>>;
+    }
+
+    /// Removes all faces for which `keep` returns false, by [`remove_faces`](Self::remove_faces).
+    /// Returns the number of removed faces.
+    ///
+    /// # Errors
+    ///
+    /// Returns the same errors as [`remove_faces`](Self::remove_faces).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use sixfold_core::{MeshEdit, Refusal};
+    /// /// Cuts off everything below the plane z = 0.
+    /// fn cut<M: MeshEdit>(mesh: &mut M) -> Result<usize, Refusal<M>> {
+    ///     let above: Vec<bool> = mesh
+    ///         .faces()
+    ///         .map(|f| mesh.face_vertices(f).all(|v| mesh.position(v).z >= 0.0))
+    ///         .collect();
+    ///     let mut above = above.into_iter();
+    ///     mesh.retain_faces(|_| above.next().unwrap_or(true))
+    /// }
+    /// ```
+    fn retain_faces(
+        &mut self,
+        mut keep: impl FnMut(Self::Face) -> bool,
+    ) -> Result<usize, Refusal<Self>> {
+        let removed: Vec<Self::Face> = self.faces().filter(|&f| !keep(f)).collect();
+        self.remove_faces(&removed)?;
+        Ok(removed.len())
     }
 
     /// Removes all vertices without a face; returns the number of removed vertices.

@@ -302,6 +302,7 @@ impl<M: MeshEdit, D: FollowEdits<M>> MeshEdit for MeshWithData<M, D> {
         add_vertex_logged(at: Point) -> Result<M::Vertex, Refusal<M>>, splits nothing();
         add_face_logged(corners: &[M::Vertex]) -> Result<M::Face, Refusal<M>>, splits nothing();
         remove_face_logged(f: M::Face) -> Result<(), Refusal<M>>, splits nothing();
+        remove_faces_logged(faces: &[M::Face]) -> Result<(), Refusal<M>>, splits nothing();
         remove_vertex_logged(v: M::Vertex) -> Result<(), Refusal<M>>, splits nothing();
         remove_isolated_vertices_logged() -> usize, splits nothing();
         split_edge_logged(e: M::Edge, at: Point) -> Result<M::Vertex, Refusal<M>>, splits edge(e);

@@ -90,6 +90,20 @@ pub enum BuildError {
     },
 }
 
+impl BuildError {
+    /// Returns the first face that the error names, if it names one.
+    pub fn first_face(&self) -> Option<FaceId> {
+        match self {
+            Self::TooMany { .. } | Self::IsolatedVertex { .. } => None,
+            Self::NotATriangle { face, .. } | Self::CoincidentCorners { face, .. } => Some(*face),
+            Self::NonManifoldEdge { faces, .. } => faces.first().copied(),
+            Self::RepeatedSide { first, .. } | Self::NonManifoldVertex { first, .. } => {
+                Some(*first)
+            }
+        }
+    }
+}
+
 /// The reason why vertices cannot be moved; every vertex keeps its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

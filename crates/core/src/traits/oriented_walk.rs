@@ -130,6 +130,45 @@ pub trait OrientedWalk: MeshQuery {
         self.twin_side(s).map(|twin| self.next_side(twin))
     }
 
+    /// Returns the next side without a twin along a boundary, or `None` if `s` has a twin. The returned
+    /// side starts where `s` ends; both have the same hole on their right. So a walk from `s` visits the
+    /// sides around a hole and comes back to `s`, unless an edge with three or more faces interrupts the
+    /// boundary. Takes one step for each side at the end of `s`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use sixfold_core::OrientedWalk;
+    ///
+    /// /// Returns the number of edges around the hole at the boundary side `start`.
+    /// fn hole_size<M: OrientedWalk>(mesh: &M, start: M::Side) -> usize {
+    ///     let next = |s: &M::Side| mesh.next_boundary_side(*s).filter(|&s| s != start);
+    ///     std::iter::successors(Some(start), next).count()
+    /// }
+    /// ```
+    fn next_boundary_side(&self, s: Self::Side) -> Option<Self::Side> {
+        if self.twin_side(s).is_some() {
+            return None;
+        }
+        let mut side = self.next_side(s);
+        while let Some(twin) = self.twin_side(side) {
+            side = self.next_side(twin);
+        }
+        Some(side)
+    }
+    /// Returns the side before `s` along a boundary, the inverse of
+    /// [`next_boundary_side`](Self::next_boundary_side); `None` if `s` has a twin.
+    fn prev_boundary_side(&self, s: Self::Side) -> Option<Self::Side> {
+        if self.twin_side(s).is_some() {
+            return None;
+        }
+        let mut side = self.prev_side(s);
+        while let Some(twin) = self.twin_side(side) {
+            side = self.prev_side(twin);
+        }
+        Some(side)
+    }
+
     /// Yields every side once, face by face.
     fn sides(&self) -> impl Iterator<Item = Self::Side> {
         self.faces().flat_map(|f| self.face_sides(f))

@@ -129,6 +129,21 @@ pub trait MeshQuery {
             .find(|&f| self.face_vertices(f).any(|v| v == b))
     }
 
+    /// Returns an edge of both faces, or `None` if they share no edge. If they share several edges, returns
+    /// any of them. Costs as much as `face_edges(f)` and, for each edge, `edge_faces`.
+    fn common_edge(&self, f: Self::Face, g: Self::Face) -> Option<Self::Edge> {
+        self.face_edges(f)
+            .find(|&e| f != g && self.edge_faces(e).any(|other| other == g))
+    }
+
+    /// Yields the third vertex of each triangle along `e`: two vertices at an inner edge, and one at a
+    /// boundary edge. Faces that are not triangles have none. Costs as much as `edge_faces(e)`, plus
+    /// `face_vertices` for each face.
+    fn opposite_vertices(&self, e: Self::Edge) -> impl Iterator<Item = Self::Vertex> {
+        self.edge_faces(e)
+            .filter_map(move |f| self.opposite_vertex(f, e))
+    }
+
     /// Returns the vertex of triangle `f` that is not an end of `e`; costs as much as
     /// `edge_vertices(e)` and `face_vertices(f)`. Returns `None` if `f` is not a triangle, or if
     /// `e` is not a side of `f`.
@@ -160,6 +175,12 @@ pub trait MeshQuery {
     /// `edge_faces` for each edge at `v`.
     fn is_boundary_vertex(&self, v: Self::Vertex) -> bool {
         self.vertex_edges(v).any(|e| self.is_boundary_edge(e))
+    }
+
+    /// Returns whether an edge of `f` is a boundary edge; costs as much as `face_edges(f)`, plus `edge_faces`
+    /// for each edge.
+    fn is_boundary_face(&self, f: Self::Face) -> bool {
+        self.face_edges(f).any(|e| self.is_boundary_edge(e))
     }
 
     /// Returns whether `v` is the handle of a vertex of this mesh. The result is false if an edit
@@ -301,6 +322,23 @@ pub trait MeshQuery {
             .vertex_faces(v)
             .map(|f| spoke(self.face_vertices(f), v));
         ring(spokes.collect()).map(Vec::into_iter)
+    }
+
+    /// Returns the vertices of [`one_ring`](Self::one_ring), each with the face that follows it
+    /// counter-clockwise. At a boundary vertex, the last vertex has no face. Costs as much as `one_ring`,
+    /// plus `vertex_faces(v)` and `face_vertices` for each face at `v`.
+    fn one_ring_with_faces(
+        &self,
+        v: Self::Vertex,
+    ) -> Option<impl Iterator<Item = (Self::Vertex, Option<Self::Face>)>> {
+        let after = |f: Self::Face| (spoke(self.face_vertices(f), v)[0], f);
+        let mut faces: Vec<(Self::Vertex, Self::Face)> = self.vertex_faces(v).map(after).collect();
+        faces.sort_unstable();
+        let ring = self.one_ring(v)?;
+        Some(ring.map(move |w| {
+            let place = faces.binary_search_by_key(&w, |&(after, _)| after);
+            (w, place.ok().map(|place| faces[place].1))
+        }))
     }
 }
 

@@ -89,7 +89,7 @@ macro_rules! row_handles {
 #[macro_export]
 macro_rules! moving_positions {
     ($mesh:ident) => {
-        impl<E: $crate::Editing> $crate::MeshMove for $mesh<E> {
+        impl<E: $crate::Editing, P: $crate::Probe> $crate::MeshMove for $mesh<E, P> {
             fn set_positions_logged(
                 &mut self,
                 positions: &$crate::VertexMap<Self, $crate::Point>,

@@ -150,6 +150,48 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(())
     }
 
+    /// Removes the triangles `gone`, which are sorted, without a check. The triangles that remain at a vertex
+    /// form one fan.
+    pub(super) fn remove_triangles(&mut self, gone: &[FaceId], log: &mut impl EditLog<Self>) {
+        let is_gone = |c: CornerId| gone.binary_search(&c.triangle()).is_ok();
+        let mut starts = Vec::new();
+        for &f in gone {
+            for (c, _) in self.opposites_of(f) {
+                let v = self.vertex(c);
+                // The first remaining corner follows a corner that goes.
+                let (mut start, mut remains_before) = (Slot::NONE, false);
+                for (after, _) in self.fan(v) {
+                    let remains = !is_gone(after);
+                    if remains && !remains_before {
+                        start = Slot::some(after.prev());
+                    }
+                    remains_before = remains;
+                }
+                starts.push((v, start));
+            }
+        }
+        for (v, start) in starts {
+            *self.corner.write(v.index()) = start;
+        }
+        for &f in gone {
+            for (c, across) in self.opposites_of(f) {
+                match across.get() {
+                    // The first of the two triangles reports the edge.
+                    Some(o) if is_gone(o) => {
+                        if c < o {
+                            log.removed_edge(faced_by(c));
+                        }
+                    }
+                    _ => self.unlink_side(c, across, log),
+                }
+            }
+            log.removed_face(f);
+        }
+        for &f in gone {
+            self.delete_triangle(f);
+        }
+    }
+
     /// Removes `v` and all triangles at `v`. Each neighbour of `v` loses one triangle or two
     /// adjacent triangles.
     pub(super) fn remove_star(

@@ -61,6 +61,9 @@ fn commands(polygons: &PolygonMesh) -> Vec<EditByName> {
     for (f, face) in polygons.faces().iter() {
         let f = f.index();
         texts.push(format!("remove_face f{f}"));
+        texts.push(format!("remove_faces f{f}"));
+        let next = (f + 1) % polygons.face_count();
+        texts.push(format!("remove_faces f{next} f{f}"));
         texts.push(format!("poke_face f{f}"));
         let [a, c] = [face[0].index(), face[2].index()];
         texts.push(format!("split_face f{f} v{a} v{c}"));

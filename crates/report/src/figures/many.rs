@@ -283,6 +283,7 @@ fn section(mesh: &Mesh<'_>, results: &Results, count: usize, command: &str) -> S
         title: mesh.name.clone(),
         facts: facts(&study.mesh),
         summary: Some(Summary::of_study(study, results)),
+        code: Vec::new(),
         sentences: sentences.into_iter().flatten().collect(),
         figures: figures.into_iter().flatten().collect(),
         tables,

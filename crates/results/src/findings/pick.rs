@@ -64,6 +64,9 @@ pub struct PickReport {
     pub mismatches: Vec<String>,
     /// Sentences that name the fastest backend and explain the result.
     pub sentences: Vec<String>,
+    /// How a program uses the chosen backend: the command that adds the package, then lines of Rust. Empty without a choice.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub usage: Vec<String>,
     /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
     /// True if the measurement was stopped early. Backends may then have fewer samples.
@@ -251,10 +254,15 @@ pub struct Ranked {
     pub warm_up_only: bool,
     /// The largest number of page faults in a sample; `None` if page faults were not counted.
     pub faults: Option<u64>,
-    /// The names of the packages that a program needs as dependencies to use this backend.
-    pub crates: Vec<String>,
-    /// The Rust paths of the types that a program needs to use this backend.
+    /// The result of a run of a program; `None` for a workload.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub result: Option<f64>,
+    /// The Rust paths of the types that a program needs to use this backend: the structure, and relation tables made
+    /// from it.
     pub types: Vec<String>,
+    /// The relations of the tables. In JSON, left out for a structure.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tabulated: Vec<String>,
 }
 
 /// The cost of one operation of the workload on one backend.

@@ -62,6 +62,47 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(())
     }
 
+    /// Removes `f` and the edges without another face; O(degree). While several faces are removed, a vertex
+    /// may have several fans: `next` and `prev` of the runs without a face lead across each gap.
+    pub(super) fn unlink_face(&mut self, f: FaceId, log: &mut impl EditLog<Self>) {
+        let first = self.along(*self.sides.read(f.index()), f);
+        let mut runs = ShortVec::new();
+        let mut run = first;
+        loop {
+            runs.push((run, self.run(run).across() != Slot::NONE));
+            run = self.run_after(run);
+            if run == first {
+                break;
+            }
+        }
+        let mut arriving = runs.as_slice()[runs.as_slice().len() - 1];
+        for &leaving in runs.as_slice() {
+            let v = self.run(leaving.0).origin();
+            let into = match arriving {
+                (run, true) => run,
+                (run, false) => self.run_before(run.twin()),
+            };
+            let out = match leaving {
+                (run, true) => run,
+                (run, false) => self.run_after(run.twin()),
+            };
+            if out == arriving.0.twin() {
+                *self.spokes.write(v.index()) = Slot::NONE;
+            } else {
+                self.link(into, out);
+                self.set_spoke(v, into.edge);
+            }
+            arriving = leaving;
+        }
+        for &(run, has_other_face) in runs.as_slice() {
+            match has_other_face {
+                true => self.set_face(run, Slot::NONE),
+                false => self.delete_edge(run.edge, log),
+            }
+        }
+        self.delete_face(f, log);
+    }
+
     pub(super) fn remove_star(
         &mut self,
         v: VertexId,

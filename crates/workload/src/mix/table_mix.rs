@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::ops::Range;
 
 use sixfold::{MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation};
-use sixfold_relation_table::Numbering;
+use sixfold_relation_table::{Numbering, RelationTables};
 
 use crate::backend::Backend;
 use crate::handle_lists::HandleLists;
@@ -18,7 +18,7 @@ use crate::operation::Operation;
 use crate::passes::run_whole;
 use crate::series::Series;
 use crate::sweeps::Outputs;
-use crate::tables::{TABLE_TYPE, TABLES, Tables, time_building};
+use crate::tables::{TABLE_TYPE, TABLES, time_building};
 use crate::workload::Action;
 use sixfold_results::Time;
 
@@ -44,12 +44,12 @@ pub(crate) fn tabulate_structure<'a, M: Representation + 'static>(
     route: &'a Route,
 ) -> Option<Box<dyn MixBackend + 'a>> {
     let mesh = M::from_polygons(polygons).ok()?;
-    let tables = Tables::new(&mesh, &relations(schedule)).ok()?;
+    let tables = RelationTables::new(&mesh, &relations(schedule)).ok()?;
     let handles = route_handles(&mesh, polygons, route);
     Some(Box::new(TableMix {
         outputs: Outputs::for_mesh(&tables),
-        moved: tables.positions.clone(),
-        merged: polygons.vertex_count() - tables.positions.len(),
+        moved: tables.positions().to_vec(),
+        merged: polygons.vertex_count() - tables.vertex_count(),
         tables,
         schedule,
         handles,
@@ -60,13 +60,13 @@ pub(crate) fn tabulate_structure<'a, M: Representation + 'static>(
     }))
 }
 
-/// Returns the relations that a schedule queries, with duplicates.
+/// Returns the relations that a schedule queries.
 fn relations(schedule: &Schedule) -> Vec<Relation> {
-    let relations = schedule
-        .parts
-        .iter()
-        .flat_map(|part| part.action.relations());
-    relations.collect()
+    let is_queried = |relation: &Relation| {
+        let mut parts = schedule.parts.iter();
+        parts.any(|part| part.action.relations().contains(relation))
+    };
+    Relation::ALL.into_iter().filter(is_queried).collect()
 }
 
 /// Converts the route to the element numbers of the tables.
@@ -74,7 +74,7 @@ fn route_handles<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
     route: &Route,
-) -> HandleLists<Tables> {
+) -> HandleLists<RelationTables> {
     let handles = HandleLists::from_route(route, mesh, polygons, &[]);
     let numbers = Numbering::new(mesh);
     handles.map_handles(
@@ -85,11 +85,11 @@ fn route_handles<M: Representation>(
 }
 
 struct TableMix<'a> {
-    tables: Tables,
+    tables: RelationTables,
     schedule: &'a Schedule,
-    handles: HandleLists<Tables>,
+    handles: HandleLists<RelationTables>,
     own_memory: OwnMemory,
-    outputs: Outputs<Tables>,
+    outputs: Outputs<RelationTables>,
     moved: Vec<Point>,
     merged: usize,
     polygons: &'a PolygonMesh,
@@ -103,8 +103,8 @@ impl TableMix<'_> {
         let bytes = self.tables.bytes();
         let time = (self.build)(self.polygons, &relations(self.schedule), bytes, series);
         let outcome = series.check.then(|| Outcome {
-            checksum: (self.tables.vertex_count() + self.tables.faces) as f64,
-            elements: self.tables.faces as u64,
+            checksum: (self.tables.vertex_count() + self.tables.face_count()) as f64,
+            elements: self.tables.face_count() as u64,
             refused: 0,
         });
         TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
@@ -134,8 +134,8 @@ impl TableMix<'_> {
 /// **Timed**: runs the operations `range` of one part. Returns the numbers of operations, of results, and of
 /// refused edits: tables have no edits.
 fn run_range(
-    tables: &mut Tables,
-    handles: &HandleLists<Tables>,
+    tables: &mut RelationTables,
+    handles: &HandleLists<RelationTables>,
     action: Action,
     range: Range<u64>,
 ) -> Counts {
@@ -143,9 +143,9 @@ fn run_range(
     match action {
         Action::SetPosition => {
             for run in handles.vertices_of(range) {
-                for v in run {
-                    let at = &mut tables.positions[v.index()];
-                    *at = black_box(*at);
+                for &v in run {
+                    let at = black_box(tables.position(v));
+                    tables.set_position(v, at);
                 }
             }
             [operations, operations, 0]
@@ -174,6 +174,10 @@ impl TimedBackend for TableMix<'_> {
 
     fn merged_vertices(&self) -> usize {
         self.merged
+    }
+
+    fn tabulated(&self) -> Vec<Relation> {
+        relations(self.schedule)
     }
 
     fn bytes(&self) -> usize {

@@ -4,7 +4,8 @@ use std::hint::black_box;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use sixfold::{FaceVertexMesh, PolygonMesh, QueryCost, Relation, Representation};
+use sixfold::{FaceVertexMesh, MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
+use sixfold_relation_table::RelationTables;
 
 use super::Program;
 use super::forms::{Queries, refuses};
@@ -13,7 +14,7 @@ use super::subject::{ONLY_WHOLE, ProgramRefusal, message, record, run_program};
 use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::operation::Operation;
 use crate::series::Series;
-use crate::tables::{TABLES, Tables, time_building};
+use crate::tables::{TABLES, time_building};
 use sixfold_results::Time;
 
 /// The structure from which the tables are made. It holds every mesh.
@@ -24,8 +25,8 @@ pub(super) struct OnTables<'p, P: Program> {
     program: Arc<P>,
     polygons: &'p PolygonMesh,
     relations: Vec<Relation>,
-    tables: Tables,
-    scratch: P::Scratch<Tables>,
+    tables: RelationTables,
+    scratch: P::Scratch<RelationTables>,
     merged: usize,
 }
 
@@ -41,14 +42,14 @@ impl<'p, P: Program> OnTables<'p, P> {
         };
         let relations: Vec<Relation> = Relation::ALL.into_iter().filter(is_asked).collect();
         let mesh = MadeFrom::from_polygons(polygons)?;
-        let tables = Tables::new(&mesh, &relations)
+        let tables = RelationTables::new(&mesh, &relations)
             .map_err(|reason| ProgramRefusal::Refused(reason.to_string()))?;
         let refused = |reason: String| ProgramRefusal::Refused(refuses(&reason));
         let set_up = || program.set_up(&tables).map_err(refused);
         let scratch = catch_unwind(AssertUnwindSafe(set_up))
             .map_err(|panic| ProgramRefusal::Panicked(message(panic.as_ref())))??;
         Ok(Self {
-            merged: polygons.vertex_count() - tables.positions.len(),
+            merged: polygons.vertex_count() - tables.vertex_count(),
             program,
             polygons,
             relations,
@@ -74,7 +75,7 @@ impl<'p, P: Program> OnTables<'p, P> {
     fn build(&self, series: &Series<'_>) -> (Time, Option<Outcome>) {
         let bytes = self.tables.bytes();
         let time = time_building::<MadeFrom>(self.polygons, &self.relations, bytes, series);
-        let faces = self.tables.faces;
+        let faces = self.tables.face_count();
         let outcome = series
             .check
             .then(|| Outcome::new(faces as f64, faces as u64));
@@ -93,6 +94,10 @@ impl<P: Program> TimedBackend for OnTables<'_, P> {
 
     fn merged_vertices(&self) -> usize {
         self.merged
+    }
+
+    fn tabulated(&self) -> Vec<Relation> {
+        self.relations.clone()
     }
 
     fn bytes(&self) -> usize {

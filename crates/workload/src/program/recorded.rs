@@ -283,7 +283,7 @@ impl<M: Representation> Representation for Recorded<M> {
     }
 }
 
-impl<M: Representation> MeshMove for Recorded<M> {
+impl<M: MeshMove> MeshMove for Recorded<M> {
     fn set_positions_logged(
         &mut self,
         positions: &VertexMap<Self, Point>,
@@ -391,12 +391,14 @@ macro_rules! edit_method {
     (type vertex) => { M::Vertex };
     (type vertex_if_any) => { Option<M::Vertex> };
     (type vertices) => { &[M::Vertex] };
+    (type faces) => { &[M::Face] };
     (type corners) => { [M::Vertex; 2] };
     (type edge) => { M::Edge };
     (type face) => { M::Face };
     (type position) => { Point };
     (type new_position) => { Point };
     (owned vertices $a:ident) => { $a.to_vec() };
+    (owned faces $a:ident) => { $a.to_vec() };
     (owned $kind:ident $a:ident) => { $a };
     (result vertex) => { Result<M::Vertex, Refusal<Self>> };
     (result edge) => { Result<M::Edge, Refusal<Self>> };

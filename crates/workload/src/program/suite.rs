@@ -52,7 +52,7 @@ sixfold_core::named! {
 /// A structure on which a program runs.
 pub struct Contestant {
     info: StructureInfo,
-    type_path: &'static str,
+    type_paths: Vec<&'static str>,
     /// The structure from which relation tables are made; `None` for a structure.
     made_from: Option<StructureInfo>,
     prepare: Box<Prepare>,
@@ -260,7 +260,7 @@ impl Contestant {
         let program = Arc::clone(program);
         Self {
             info: StructureInfo::new::<F::Mesh>(),
-            type_path: F::Mesh::type_path(),
+            type_paths: vec![F::Mesh::type_path()],
             made_from: None,
             prepare: Box::new(move |polygons| {
                 Ok(Box::new(Subject::<F>::new(Arc::clone(&program), polygons)?))
@@ -279,7 +279,7 @@ impl Contestant {
                 costs: [QueryCost::Local; 9],
                 ..made_from
             },
-            type_path: TABLE_TYPE,
+            type_paths: vec![MadeFrom::type_path(), TABLE_TYPE],
             made_from: Some(made_from),
             prepare: Box::new(move |polygons| {
                 Ok(Box::new(OnTables::new(Arc::clone(&program), polygons)?))
@@ -346,9 +346,9 @@ impl Contestant {
         self.made_from.as_ref()
     }
 
-    /// Returns the Rust path of the type of the structure.
-    pub fn type_path(&self) -> &'static str {
-        self.type_path
+    /// Returns the Rust paths of the types: the structure, and relation tables made from it.
+    pub fn type_paths(&self) -> &[&'static str] {
+        &self.type_paths
     }
 
     /// Builds the structure and the scratch data of the program.

@@ -19,6 +19,11 @@ impl Model {
             }
             Action::AddFace { ref corners } => self.add_face(corners),
             Action::RemoveFace { f } => self.remove_face(f),
+            Action::RemoveFaces { ref faces } => {
+                faces.iter().try_for_each(|&f| self.face(f).map(|_| ()))?;
+                faces.iter().for_each(|&f| self.faces[f] = None);
+                Some(())
+            }
             Action::RemoveVertex { v } => self.remove_vertex(v),
             Action::RemoveIsolatedVertices {} => {
                 self.remove_isolated();

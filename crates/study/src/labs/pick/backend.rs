@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::time::Duration;
 
-use sixfold::{Edit, PolygonMesh};
+use sixfold::{Edit, PolygonMesh, Relation};
 use sixfold_core::Counts;
 use sixfold_workload::{Action, Backend, EditPlaceError, MixBackend, Operation, Schedule};
 
@@ -30,6 +30,8 @@ pub(crate) struct Candidate {
     pub(crate) made_from: Option<&'static str>,
     /// The paths of the types that a program needs to use the backend.
     pub(crate) type_paths: Vec<&'static str>,
+    /// The relations of relation tables.
+    pub(crate) tabulated: Vec<Relation>,
     /// By part of the mix: whether one operation scans all faces.
     pub(crate) scans: Vec<bool>,
     pub(crate) bytes: usize,
@@ -70,6 +72,7 @@ impl<'a> PickBackend<'a> {
             structure: self.structure,
             made_from: self.made_from,
             type_paths: self.mixer.type_paths(),
+            tabulated: self.mixer.tabulated(),
             scans: self.mixer.scans(),
             bytes: self.mixer.bytes(),
         };

@@ -151,8 +151,9 @@ mod tests {
             samples: 10,
             warm_up_only: false,
             faults: None,
-            crates: Vec::new(),
+            result: None,
             types: Vec::new(),
+            tabulated: Vec::new(),
         }
     }
 

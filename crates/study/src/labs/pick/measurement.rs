@@ -225,6 +225,7 @@ impl Evaluation<'_> {
             name,
             made_from,
             type_paths,
+            tabulated,
             bytes,
             ..
         } = m.candidate;
@@ -250,16 +251,14 @@ impl Evaluation<'_> {
             samples: m.samples.len(),
             warm_up_only: m.is_warm_up_only(),
             faults: m.most_faults(),
-            crates: type_paths.iter().map(|path| package_of(path)).collect(),
+            result: m
+                .entry(Task::Program)
+                .and_then(|run| run.outcome)
+                .map(|outcome| outcome.checksum),
             types: type_paths.iter().map(|&path| path.to_owned()).collect(),
+            tabulated: tabulated.iter().map(ToString::to_string).collect(),
         })
     }
-}
-
-/// Returns the package name from the path of a type.
-fn package_of(type_path: &str) -> String {
-    let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
-    package.replace('_', "-")
 }
 
 #[cfg(test)]
@@ -288,6 +287,7 @@ mod tests {
             structure: None,
             made_from: None,
             type_paths: Vec::new(),
+            tabulated: Vec::new(),
             scans: vec![false; schedule.parts.len()],
             bytes: 1,
         };

@@ -87,6 +87,7 @@ pub(crate) fn pooled(
         mismatches: disagreeing,
         sentences: Vec::new(),
         warnings: Vec::new(),
+        usage: Vec::new(),
         interrupted,
         timer,
         samples: Vec::new(),
@@ -108,6 +109,7 @@ pub(crate) fn pooled(
         report.control_ratios = only.control_ratios;
     }
     report.sentences = reasons::sentences(&report);
+    report.usage = reasons::usage(&report);
     report.warnings = reasons::warnings(&report);
     report
 }

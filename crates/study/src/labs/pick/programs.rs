@@ -359,7 +359,15 @@ impl<'e> Conditions<'e> {
             name: contestant.name().to_owned(),
             structure: None,
             made_from: contestant.made_from().map(|structure| structure.name),
-            type_paths: vec![contestant.type_path()],
+            type_paths: contestant.type_paths().to_vec(),
+            tabulated: match (contestant.made_from(), backend.tabulated(), asked) {
+                // A child process does not tell its tables.
+                (Some(_), tabulated, Some(asked)) if tabulated.is_empty() => {
+                    let names = asked.iter().map(|count| count.operation.as_str());
+                    names.filter_map(|name| name.parse().ok()).collect()
+                }
+                (_, tabulated, _) => tabulated,
+            },
             scans: Vec::new(),
             bytes,
         };

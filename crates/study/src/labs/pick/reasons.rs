@@ -2,13 +2,13 @@
 
 use crate::engine::warnings::machine_warnings;
 use crate::labs::pick::choice::{rule, what_would_change};
-use crate::packages;
+use crate::usage;
 use sixfold_results::numbers::{counted, duration, figure, grouped, list, rounded};
 use sixfold_results::statistics::MIN_SAMPLES;
 use sixfold_results::{EQUAL_UP_TO, Need, PartCost, PickReport, ProgramReport, Ranked, Samples};
 use sixfold_workload::Action;
 
-/// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
+/// Returns sentences about the fastest backend, the reasons, the and the break-even.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     let best = match report.ranking.first() {
         None => return vec!["No backend qualifies.".into()],
@@ -16,8 +16,7 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
         Some(best) => best,
     };
     let chosen = report.choice.as_ref();
-    let used = chosen.and_then(|c| report.ranking.iter().find(|r| r.backend == c.backend));
-    let used = used.unwrap_or(best);
+    let used = used(report).unwrap_or(best);
     let mut sentences = vec![fastest(report, best)];
     sentences.extend(not_ranked(report, best));
     sentences.extend(chosen.and_then(|choice| rule(choice, &report.ranking)));
@@ -32,8 +31,14 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     sentences.extend(tables(report, best));
     sentences.extend(refined_form(report));
     sentences.extend(one_use_with_building(report, used));
-    sentences.push(packages_to_add(used));
     sentences
+}
+
+/// Returns the chosen backend; without a choice, the fastest.
+fn used(report: &PickReport) -> Option<&Ranked> {
+    let choice = report.choice.as_ref();
+    let chosen = choice.and_then(|c| report.ranking.iter().find(|r| r.backend == c.backend));
+    chosen.or(report.ranking.first().filter(|best| !best.estimated))
 }
 
 const NOT_MEASURED: &str = "No backend was measured, because a run would exceed the budget: use a \
@@ -92,14 +97,22 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
                  Sixfold: please report it."
             ),
             Some(_) => format!(
-                "{backend} gives a different result from the other backends, by more than rounding. \
-                 The result of a program must not depend on the order in which a query lists the \
-                 neighbours."
+                "{backend} gives a different result from the other backends, by more than rounding."
             ),
         });
     }
+    if report.program.is_some() && !report.mismatches.is_empty() {
+        warnings.push(WHY_RESULTS_DIFFER.into());
+    }
     warnings
 }
+
+/// The reasons for different results of a program, the most likely first, each with how to test it.
+const WHY_RESULTS_DIFFER: &str = "Likely reasons for different results, the most likely first: (1) a \
+    query lists neighbours, edges or faces in another order, and the program takes the first, or the first of \
+    equals: sort them by `vertex_numbers`, and measure again; (2) edges are numbered in another order: sort \
+    them by the numbers of their ends; (3) an edit is refused on one structure, as structures of manifolds do: \
+    count the refused edits in the result; (4) sums of `f32` in another order: add up in `f64`.";
 
 fn name(ranked: &Ranked) -> String {
     match &ranked.made_from {
@@ -299,7 +312,11 @@ fn one_use_with_building(report: &PickReport, used: &Ranked) -> Option<String> {
     })
 }
 
-/// Describes the commands that add the packages, and the types to use.
-fn packages_to_add(best: &Ranked) -> String {
-    packages::how_to_use(&best.types, &best.crates, packages::checkout().as_deref())
+/// Returns the lines with which a program uses the choice for many uses.
+pub(crate) fn usage(report: &PickReport) -> Vec<String> {
+    let mesh = report.meshes.first().map_or("", |mesh| &mesh.name);
+    used(report).map_or(Vec::new(), |used| {
+        let checkout = usage::checkout();
+        usage::lines(&used.types, &used.tabulated, mesh, checkout.as_deref())
+    })
 }
