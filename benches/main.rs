@@ -9,6 +9,7 @@ mod input;
 mod query;
 mod spatial;
 mod subdivision;
+mod values;
 mod workload;
 mod zero_cost;
 
@@ -35,6 +36,6 @@ criterion_group! {
     config = short_runs();
     targets = zero_cost::define, construction::define, workload::define, query::define,
         subdivision::define, editing::define,
-        spatial::define
+        spatial::define, values::define
 }
 criterion_main!(all);

@@ -9,7 +9,7 @@ use sixfold::{
     AcceptedEdit, Changes, EdgeData, EdgeMap, EditableCornerTable, EditableHalfEdgeMesh,
     EditableIndexedFaceSet, EditablePolygonSoup, FaceData, FaceMap, FollowEdits, Handle, HandleMap,
     LocalQueries, MeshEdit, MeshMove, MeshQuery, MeshWithData, OrientedWalk, Point, PolygonMesh,
-    Representation, VertexData, VertexMap, for_each_editable,
+    Representation, SideData, VertexData, VertexMap, for_each_editable,
 };
 use sixfold_conformance::law::{ElementNumbers, names_follow_edits_by, numbers_follow_edits};
 use sixfold_core::FacesBefore;
@@ -72,6 +72,67 @@ fn compare_structures(operator: &impl Operator, polygons: &PolygonMesh) {
         assert!(faces.iter().all(|&(_, origin)| origin < count), "{}", M::NAME);
         let same = first.get_or_insert_with(|| faces.clone()) == &faces;
         assert!(same, "{} has other data", M::NAME);
+    });
+}
+
+/// The value of a side is the sum of the numbers of its face and of its ends, weighted.
+fn expected_side(numbers: &[usize; 3]) -> u32 {
+    numbers[0] as u32 * 10_000 + numbers[1] as u32 * 100 + numbers[2] as u32
+}
+
+#[test]
+fn values_of_sides_stay_at_their_sides() {
+    let polygons = sixfold::shapes::icosahedron();
+    for_each_editable!(M => {
+        let mesh = M::from_polygons(&polygons).expect("a manifold");
+        let (vertices, faces) = (mesh.vertex_numbers(), mesh.face_numbers());
+        let mut values = SideData::new(&mesh, 0_u32);
+        let sides = |mesh: &M| -> Vec<(<M as MeshQuery>::Face, [<M as MeshQuery>::Vertex; 2])> {
+            let of_face = |f| {
+                let corners: Vec<_> = mesh.face_vertices(f).collect();
+                let next = corners.iter().copied().cycle().skip(1);
+                corners.iter().copied().zip(next).map(move |(a, b)| (f, [a, b])).collect::<Vec<_>>()
+            };
+            mesh.faces().flat_map(of_face).collect()
+        };
+        let value = |(f, [a, b]): (_, [_; 2])| {
+            expected_side(&[faces[f] as usize + 1, vertices[a] as usize, vertices[b] as usize])
+        };
+        let before = sides(&mesh);
+        for &(f, ends) in &before {
+            values.set(&mesh, f, ends, value((f, ends)));
+        }
+        // Not a side: its reverse is.
+        values.set(&mesh, before[0].0, [before[0].1[1], before[0].1[0]], 7);
+        assert_eq!(*values.get(before[0].0, [before[0].1[1], before[0].1[0]]), 0);
+        let edge = mesh.edge_between(before[0].1[0], before[0].1[1]).expect("a side has an edge");
+        let mut mesh = MeshWithData::new(mesh, values);
+        mesh.flip_edge(edge).expect("two triangles");
+        let flipped = sides(mesh.mesh());
+        let kept = |side: &&(_, _)| before.contains(side);
+        assert_eq!(flipped.iter().filter(kept).count(), 56, "{}: each triangle keeps one side", M::NAME);
+        for &(f, ends) in &flipped {
+            let expected = if before.contains(&(f, ends)) { value((f, ends)) } else { 0 };
+            assert_eq!(*mesh.data().get(f, ends), expected, "{}", M::NAME);
+        }
+        // A removed face has no values, and compaction renames faces and vertices.
+        let (last, _) = flipped[flipped.len() - 1];
+        let position = |mesh: &M, v| mesh.position(v).to_array().map(f32::to_bits);
+        let named = |mesh: &MeshWithData<M, SideData<M, u32>>| {
+            let sides = sides(mesh.mesh()).into_iter();
+            let named = sides.map(|(f, ends)| {
+                (ends.map(|v| position(mesh.mesh(), v)), *mesh.data().get(f, ends))
+            });
+            let mut named: Vec<_> = named.collect();
+            named.sort_unstable();
+            named
+        };
+        let corner = mesh.face_vertices(last).next().expect("a corner");
+        mesh.remove_vertex(corner).expect("a closed fan");
+        let values = named(&mesh);
+        mesh.compact();
+        assert_eq!(named(&mesh), values, "{}", M::NAME);
+        assert!(values.iter().filter(|(_, value)| *value > 0).count() > 40);
     });
 }
 

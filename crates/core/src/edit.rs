@@ -13,3 +13,4 @@ pub(crate) mod follow_edits;
 pub(crate) mod mesh_edit;
 pub(crate) mod mesh_with_data;
 pub(crate) mod new_rows;
+pub(crate) mod side_data;

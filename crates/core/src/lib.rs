@@ -89,6 +89,7 @@ pub use edit::element_names::{ElementNames, FacesBefore, NameChanges};
 pub use edit::follow_edits::{AcceptedEdit, FollowEdits};
 pub use edit::mesh_edit::{MeshEdit, Refusal};
 pub use edit::mesh_with_data::MeshWithData;
+pub use edit::side_data::SideData;
 pub use glam;
 pub use glam::Vec3 as Point;
 pub use handles::handle::{Handle, HandleMap, HashHandleMap, RowMap};
@@ -167,6 +168,6 @@ pub mod prelude {
         BuildError, Compact, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, Editable,
         FaceData, FaceId, FaceMap, HandleMap, LocalQueries, MeshEdit, MeshMove, MeshQuery,
         MeshWithData, MoveError, Numbers, OldToNew, OrientedWalk, Point, PolygonMesh, Refine,
-        Refusal, Representation, SideMap, VertexData, VertexId, VertexMap,
+        Refusal, Representation, SideData, SideMap, VertexData, VertexId, VertexMap,
     };
 }

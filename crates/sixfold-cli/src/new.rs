@@ -1,20 +1,22 @@
 //! `sixfold new`: writes a package that measures a program of a user.
 
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-use sixfold_study::usage;
+use std::{env, fs};
 
 use crate::arguments::New;
 use crate::failure::Failure;
 use crate::text::TextOutput;
 
 /// The files of the package. `NAME` stands for its name, and `CHECKOUT` for the path of Sixfold.
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     ("Cargo.toml", include_str!("../templates/new/manifest.toml")),
     ("src/main.rs", include_str!("../templates/new/main.rs")),
     ("README.md", include_str!("../templates/new/README.md")),
+    (
+        ".cargo/config.toml",
+        include_str!("../templates/new/config.toml"),
+    ),
     (".gitignore", "/target\n"),
 ];
 
@@ -52,24 +54,37 @@ pub(crate) fn run(arguments: &New) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the path of the repository as a text between quotes in TOML.
+/// Returns the path of the repository as a text between quotes in TOML: the given folder, else the folder in which
+/// the command runs or one above it, or a folder `sixfold` in one of them.
 fn checkout(given: Option<&Path>) -> Result<String, Failure> {
-    let found = match given {
-        Some(folder) => usage::checkout_at(folder),
-        None => usage::checkout(),
+    let above = || {
+        let here = env::current_dir().ok()?;
+        let places = here.ancestors();
+        places
+            .flat_map(|place| [place.to_owned(), place.join("sixfold")])
+            .find_map(|place| checkout_at(&place))
     };
-    let found = found.ok_or_else(|| match given {
-        Some(folder) => Failure::usage(format!(
-            "{}: no Sixfold repository is there: name its folder with --checkout",
-            folder.display()
-        )),
-        None => Failure::usage(
-            "the Sixfold repository from which this program was built does not exist any more: name \
-             its folder with --checkout",
-        ),
+    let found = match given {
+        Some(folder) => checkout_at(folder),
+        None => above(),
+    };
+    let found = found.ok_or_else(|| {
+        let place = given.map_or("the current folder or above it".into(), |folder| {
+            folder.display().to_string()
+        });
+        Failure::usage(format!(
+            "no Sixfold repository is in {place}: name its folder with --checkout"
+        ))
     })?;
     let text = found.to_string_lossy();
     Ok(text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// Returns the absolute path of `folder` if it is a repository of Sixfold.
+fn checkout_at(folder: &Path) -> Option<PathBuf> {
+    let found = folder.canonicalize().ok()?;
+    let cli = found.join("crates/sixfold-cli/Cargo.toml");
+    cli.is_file().then_some(found)
 }
 
 fn is_package_name(name: &str) -> bool {

@@ -237,8 +237,21 @@ fn queries_also_run_on_relation_tables() {
 #[test]
 fn a_new_package_is_written_once() {
     let sixfold = Sixfold::new();
-    let run = sixfold.run(&["new", "my-program"]);
+    let checkout = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    // The folder of the test is not below a repository.
+    let lost = sixfold.run(&["new", "lost"]);
+    assert_eq!(lost.code, Some(2), "{lost:?}");
+    assert!(lost.stderr.contains("--checkout"), "{lost:?}");
+    let run = sixfold.run(&["new", "my-program", "--checkout", checkout]);
     assert_eq!(run.code, Some(0), "{run:?}");
+    let flags = text(&sixfold, "my-program/.cargo/config.toml");
+    let own = std::fs::read_to_string(format!("{checkout}/.cargo/config.toml")).expect("a file");
+    let flags_of = |text: &str| {
+        text.lines()
+            .find(|l| l.starts_with("rustflags"))
+            .map(str::to_owned)
+    };
+    assert_eq!(flags_of(&flags), flags_of(&own), "times can be compared");
     let manifest = text(&sixfold, "my-program/Cargo.toml");
     assert!(manifest.contains("name = \"my-program\""), "{manifest}");
     let (_, path) = manifest
@@ -248,7 +261,10 @@ fn a_new_package_is_written_once() {
     assert!(std::path::Path::new(path).join("Cargo.toml").is_file());
     assert!(text(&sixfold, "my-program/src/main.rs").contains("sixfold_cli::main"));
     for (arguments, message) in [
-        (&["new", "my-program"][..], "not empty"),
+        (
+            &["new", "my-program", "--checkout", checkout][..],
+            "not empty",
+        ),
         (&["new", "1st"], "package name"),
         (
             &["new", "another", "--checkout", "my-program"],

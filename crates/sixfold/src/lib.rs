@@ -15,7 +15,7 @@
 //! | simplify, remesh, make Delaunay | [`remeshing`] |
 //! | find faults and repair them, so that a structure holds the mesh | [`repair::diagnose`], [`repair::repair_for`] |
 //! | find nearest vertices, closest points, ray hits; compare two meshes | [`spatial`] |
-//! | store data at vertices, edges and faces | [`MeshQuery::vertex_map`], [`MeshWithData`] |
+//! | store values at vertices, edges, faces and sides | [`values`] |
 //! | number elements from 0, for matrices | [`MeshQuery::vertex_numbers`] |
 //! | find the boundary | [`MeshQuery::boundary_loops`] |
 //! | [accept only structures with local queries](#require-local-queries) | [`LocalQueries`] |
@@ -296,7 +296,7 @@ pub use sixfold_core::glam;
 pub use sixfold_core::{
     AcceptedEdit, Changes, Created, EdgeData, EdgeId, EdgeMap, EditLog, EditRecord, ElementData,
     FaceData, FaceId, FaceMap, FollowEdits, Handle, HandleMap, HashHandleMap, MeshWithData,
-    Numbers, OldToNew, Pair, RowMap, SideMap, VertexData, VertexId, VertexMap,
+    Numbers, OldToNew, Pair, RowMap, SideData, SideMap, VertexData, VertexId, VertexMap,
 };
 // Errors.
 #[doc(inline)]
@@ -347,6 +347,8 @@ pub use sixfold_subdivision as subdivision;
 pub mod algorithms;
 #[doc = include_str!("coming_from.md")]
 pub mod coming_from {}
+#[doc = include_str!("values.md")]
+pub mod values {}
 mod structure_list;
 mod support;
 

@@ -38,7 +38,7 @@ mod refusal;
 #[cfg(test)]
 mod results_tests;
 mod runner;
-pub mod usage;
+mod usage;
 
 pub use engine::effort::Effort;
 pub use engine::heap::free_memory;

@@ -1,7 +1,5 @@
 //! How a program uses what `pick` chose: the command that adds the package, and lines of Rust.
 
-use std::path::{Path, PathBuf};
-
 use sixfold::io::Format;
 use sixfold::{Relation, Representation, for_each_representation};
 
@@ -9,37 +7,17 @@ use sixfold::{Relation, Representation, for_each_representation};
 const WIDTH: usize = 76;
 /// The file that is read if the mesh was no file.
 const SOME_FILE: &str = "mesh.obj";
-
-/// Returns the repository of Sixfold from which this program was built. Returns `None` if the folder
-/// does not exist any more.
-pub fn checkout() -> Option<PathBuf> {
-    checkout_at(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
-}
-
-/// Returns the absolute path of `folder` if it is a repository of Sixfold.
-pub fn checkout_at(folder: &Path) -> Option<PathBuf> {
-    let found = folder.canonicalize().ok()?;
-    let cli = found.join("crates/sixfold-cli/Cargo.toml");
-    cli.is_file().then_some(found)
-}
+/// The command that adds the package.
+const ADD: &str = "cargo add sixfold --path CHECKOUT/crates/sixfold   # CHECKOUT: your clone";
 
 /// Returns the command that adds the package, then lines of Rust that read the file `mesh` into a backend
-/// with these types and tables of relations. `checkout` is a repository of Sixfold. Empty if the type of the backend
-/// is not known.
-pub(crate) fn lines(
-    types: &[String],
-    tabulated: &[String],
-    mesh: &str,
-    checkout: Option<&Path>,
-) -> Vec<String> {
+/// with these types and tables of relations. Empty if the type of the backend is not known.
+pub(crate) fn lines(types: &[String], tabulated: &[String], mesh: &str) -> Vec<String> {
     let Some((path, package, name)) = types.first().and_then(|path| split(path)) else {
         return Vec::new();
     };
     let ours = is_ours(package);
-    let from = checkout.map_or(String::new(), |checkout| {
-        format!(" --path {}", quoted(&checkout.join("crates/sixfold")))
-    });
-    let mut lines = vec![format!("cargo add sixfold{from}")];
+    let mut lines = vec![ADD.to_owned()];
     let relations: Vec<Relation> = tabulated
         .iter()
         .filter_map(|name| name.parse().ok())
@@ -93,16 +71,6 @@ fn split(path: &str) -> Option<(&str, &str, &str)> {
     Some((path, package, rest.rsplit("::").next()?))
 }
 
-/// Returns a path as one word for a shell.
-fn quoted(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    let is_plain = |c: char| c.is_alphanumeric() || "/._-+:\\".contains(c);
-    match text.chars().all(is_plain) {
-        true => text.into_owned(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
-    }
-}
-
 /// Returns whether a structure of Sixfold is in this crate.
 fn is_ours(package: &str) -> bool {
     let mut ours = false;
@@ -117,12 +85,6 @@ mod tests {
     use sixfold::for_each_editable;
 
     use super::*;
-
-    #[test]
-    fn a_path_with_a_space_is_quoted() {
-        assert_eq!(quoted(Path::new("/my code/it's")), r"'/my code/it'\''s'");
-        assert_eq!(quoted(Path::new("/work/a-b_c.d")), "/work/a-b_c.d");
-    }
 
     #[test]
     fn what_is_printed_compiles() {
@@ -145,26 +107,21 @@ mod tests {
                 )
             }))
         {
-            let lines = lines(&types, tabulated, "built-in mesh", None);
-            assert_eq!(lines[0], "cargo add sixfold");
+            let lines = lines(&types, tabulated, "built-in mesh");
+            assert_eq!(lines[0], ADD);
             let code: Vec<&str> = lines[1..].iter().map(|line| line.trim()).collect();
             let found = compiled.windows(code.len()).any(|window| window == code);
             assert!(found, "{}", lines.join("\n"));
-            assert!(lines.iter().all(|line| line.len() <= WIDTH), "{lines:?}");
+            assert!(
+                lines[1..].iter().all(|line| line.len() <= WIDTH),
+                "{lines:?}"
+            );
         }
-        assert_eq!(lines(&[], &[], "a.ply", None), [""; 0]);
-        let named = lines(&known[..1], &[], "a \"b\".ply", Some(Path::new("/a b")));
-        assert_eq!(named[0], "cargo add sixfold --path '/a b/crates/sixfold'");
+        assert_eq!(lines(&[], &[], "a.ply"), [""; 0]);
+        let named = lines(&known[..1], &[], "a \"b\".ply");
         assert!(
             named[2].ends_with(r#"io::load("a \"b\".ply")?;"#),
             "{named:?}"
         );
-    }
-
-    #[test]
-    fn a_checkout_is_a_folder_with_the_command_line() {
-        let checkout = checkout().expect("the tests run in a checkout");
-        assert!(checkout.join("crates/sixfold/src/lib.rs").is_file());
-        assert_eq!(checkout_at(&checkout.join("crates")), None);
     }
 }

@@ -6,6 +6,7 @@ use clap::Args;
 
 const NEW_EXAMPLES: &str = "Examples:
   sixfold new my-program
+  sixfold new my-program --checkout ~/sixfold
   cd my-program && cargo run --release -- mesh.obj --budget 20s
 
 Exit codes: 0 success; 2 wrong usage, or DIR exists and is not empty.";
@@ -20,7 +21,7 @@ pub(crate) struct New {
     /// The folder of the package; its last part is the name
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
-    /// The repository of Sixfold [default: where this program was built]
+    /// The repository of Sixfold [default: the current folder, one above it, or `sixfold` in one of them]
     #[arg(long, value_name = "DIR")]
     pub(crate) checkout: Option<PathBuf>,
 }

@@ -316,7 +316,6 @@ fn one_use_with_building(report: &PickReport, used: &Ranked) -> Option<String> {
 pub(crate) fn usage(report: &PickReport) -> Vec<String> {
     let mesh = report.meshes.first().map_or("", |mesh| &mesh.name);
     used(report).map_or(Vec::new(), |used| {
-        let checkout = usage::checkout();
-        usage::lines(&used.types, &used.tabulated, mesh, checkout.as_deref())
+        usage::lines(&used.types, &used.tabulated, mesh)
     })
 }
