@@ -1,4 +1,4 @@
-//! Programs with a fault on the half-edge structure only. They show how the command line ends such
+//! Programs with a fault on the half-edge structure only, and one with a result that depends on the structure. They show how the command line ends such
 //! programs, with and without `--isolate`.
 //!
 //! ```sh
@@ -58,7 +58,8 @@ fn main() -> ExitCode {
                     std::process::abort();
                 }
             },
-        });
+        })
+        .program(FirstNeighbours);
     sixfold_cli::main(suite)
 }
 
@@ -72,6 +73,31 @@ fn never_end() {
 /// Returns whether this process is the second launch of a command.
 fn is_second_launch() -> bool {
     std::env::var("SIXFOLD_LAUNCH").is_ok_and(|launch| launch.contains("\"number\":1,"))
+}
+
+/// Adds up the distances from each vertex to the neighbour that is listed first. The order of neighbours is not
+/// guaranteed, so the structures give different results.
+struct FirstNeighbours;
+
+impl Program for FirstNeighbours {
+    type Scratch<M: MeshQuery> = ();
+
+    fn name(&self) -> &str {
+        "first-neighbours"
+    }
+
+    fn set_up<M: MeshQuery>(&self, _: &M) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> Outcome {
+        let distance = |v| {
+            let first = mesh.vertex_vertices(v).next()?;
+            Some(f64::from(mesh.position(v).distance(mesh.position(first))))
+        };
+        let sum = mesh.vertices().filter_map(distance).sum();
+        Outcome::new(sum, mesh.vertex_count() as u64)
+    }
 }
 
 /// Adds up the lengths of all edges, after a fault on the half-edge structure.

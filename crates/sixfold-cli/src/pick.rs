@@ -299,12 +299,14 @@ pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
 fn results(report: &PickReport) -> String {
     let differs = |ranked: &Ranked| report.mismatches.contains(&ranked.backend);
     let expected = report.ranking.iter().find(|ranked| !differs(ranked));
+    // If no two results agree, the others differ from the first.
+    let expected = expected.or(report.ranking.first());
     let expected = expected.and_then(|ranked| ranked.result);
     let rows = || report.ranking.iter();
     let names = Column::words("", rows().map(|ranked| ranked.backend.clone()));
     let values = rows().map(|ranked| ranked.result.map_or("–".into(), |x| format!("{x:?}")));
     let apart = rows().map(|ranked| match (ranked.result, expected) {
-        (Some(x), Some(expected)) if differs(ranked) => {
+        (Some(x), Some(expected)) if differs(ranked) && x != expected => {
             format!("{:.1e}", (x - expected).abs() / expected.abs().max(x.abs()))
         }
         _ => String::new(),

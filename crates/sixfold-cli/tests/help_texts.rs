@@ -30,6 +30,7 @@ fn text_is_not_wider_than_80_columns() {
     let study = ["study", "grid.obj"];
     let growth = ["growth", "--to", "2000", "--steps", "2"];
     let pick = ["pick", "grid.obj", "grid.obj"];
+    let checkout = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let mut commands = vec![
         [&study[..], &budget].concat(),
         [&growth[..], &budget].concat(),
@@ -83,7 +84,7 @@ fn text_is_not_wider_than_80_columns() {
         vec!["trace", "--edit", "poke_face f0"],
         vec!["lessons"],
         vec!["lessons", "flip"],
-        vec!["new", "package"],
+        vec!["new", "package", "--checkout", checkout],
     ];
     let all = [
         "study",

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::json_csv::finding;
 use crate::run::{Sixfold, TETRAHEDRON, interrupted, text};
 
 #[test]
@@ -297,6 +298,54 @@ fn run_faulty(sixfold: &Sixfold, programs: &str, more: &[&str], code: i32) -> (S
     let results: Value = serde_json::from_str(&text(sixfold, "r.json")).expect("JSON");
     let findings = results["findings"].as_array().expect("a list").clone();
     (run.stderr, findings)
+}
+
+#[test]
+fn different_results_are_shown_with_their_likely_reasons() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let arguments = [
+        "grid.obj",
+        "--triangulate",
+        "--programs",
+        "first-neighbours",
+        "--backends",
+        "face-vertex,half-edge,winged-edge",
+        "--rounds",
+        "2",
+        "--json",
+        "r.json",
+    ];
+    let run = sixfold.run_example("faulty_programs", &arguments);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    let finding = finding(&text(&sixfold, "r.json"));
+    let wrong = finding["mismatches"].as_array().expect("a list");
+    assert!(!wrong.is_empty(), "{finding}");
+    let header = run.stdout.lines().find(|line| line.contains("differs by"));
+    let header = header.unwrap_or_else(|| panic!("{}", run.stdout));
+    assert!(header.trim_start().starts_with("result"), "{header}");
+    let ranking = finding["ranking"].as_array().expect("a list");
+    let is_wrong = |row: &&Value| wrong.contains(&row["backend"]);
+    let reference = ranking
+        .iter()
+        .find(|row| !is_wrong(row))
+        .unwrap_or(&ranking[0]);
+    for row in ranking {
+        let name = row["backend"].as_str().expect("a name");
+        let result = row["result"].as_f64().expect("a number");
+        let mut lines = run.stdout.lines();
+        let line =
+            lines.find(|line| line.starts_with(name) && line.contains(&format!("{result:?}")));
+        let line = line.unwrap_or_else(|| panic!("{name} {result}: {}", run.stdout));
+        // Only what differs has a third cell.
+        let cells = line.split_whitespace().count();
+        let differs = is_wrong(&row) && row["result"] != reference["result"];
+        assert_eq!(cells, if differs { 3 } else { 2 }, "{line}");
+    }
+    let said = run.stdout.replace("\n  ", " ");
+    for reason in ["Likely reasons", "vertex_numbers", "refused edits", "`f64`"] {
+        assert!(said.contains(reason), "{reason}: {said}");
+    }
 }
 
 fn ranked(finding: &Value) -> Vec<&str> {
