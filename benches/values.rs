@@ -12,7 +12,7 @@ use crate::input::irregular;
 
 /// Faces of the mesh.
 const FACES: usize = 80_000;
-/// Every so many edges one is bisected.
+/// The number of edges for each edge that is bisected.
 const STEP: usize = 12;
 
 type Mesh = EditableHalfEdgeMesh;

@@ -63,7 +63,8 @@ impl Edit {
 
     /// The costs of the edits in a structure that scans all faces, if the log ignores reports.
     /// `add_face` reads O(1) rows. `remove_face`, `poke_face` and `split_face` read one face, and
-    /// `remove_faces` each of its faces. All other edits scan all faces. A structure can declare a different cost for an edit.
+    /// `remove_faces` each of its faces. All other edits scan all faces. A structure can declare a
+    /// different cost for an edit.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
         costs[Self::AddFace as usize] = Some(QueryCost::Constant);

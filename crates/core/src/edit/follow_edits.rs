@@ -7,8 +7,8 @@ use crate::traits::query::MeshQuery;
 
 /// Data that is updated after each edit of a [`MeshWithData`](crate::MeshWithData).
 ///
-/// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData) and
-/// [`FaceData`](crate::FaceData) implement this trait, and so does [`SideData`](crate::SideData). Tuples, vectors and mutable references of
+/// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData), [`FaceData`](crate::FaceData) and
+/// [`SideData`](crate::SideData) implement this trait. Tuples, vectors and mutable references of
 /// types with this trait also implement this trait. The type `()` stands for no data and costs
 /// nothing. Implement this trait for your own types of data, such as a set of selected faces.
 pub trait FollowEdits<M: MeshQuery> {

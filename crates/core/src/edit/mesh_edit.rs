@@ -104,8 +104,7 @@ macro_rules! edits {
 /// }
 /// ```
 ///
-/// The list of vertices and faces is the same with [`vertices`](MeshQuery::vertices) and
-/// [`faces`](MeshQuery::faces). If handles are not rows, a later edit may create an element with the handle
+/// The same works with vertices and faces. If handles are not rows, a later edit may create an element with the handle
 /// of a removed one; then `contains_edge` finds the new element.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be edited",
@@ -175,8 +174,7 @@ pub trait MeshEdit: MeshMove {
         /// the mesh without all of them must be legal: a strip of faces can be removed whose faces
         /// cannot be removed one by one. A face that occurs twice counts once.
         ///
-        /// Takes O(n log n) time for n corners of the faces and of the faces at these corners, or O(n)
-        /// if the structure holds non-manifold meshes.
+        /// Takes O(n log n) time for n corners of the faces and of the faces at these corners.
         ///
         /// # Errors
         ///

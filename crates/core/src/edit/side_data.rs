@@ -8,9 +8,11 @@ use crate::traits::query::MeshQuery;
 /// [`MeshWithData`](crate::MeshWithData), every edit updates the values.
 ///
 /// A side is given by its face and its two ends, in the direction of the face; the side that starts at a corner
-/// stands for the corner. Only values that were [set](Self::set) are stored. A side keeps its value as long as its
+/// stands for the corner. Only values that were [set](Self::set) are stored. A side has its value as long as its
 /// face exists and runs from the one end to the other. Other sides, also those that an edit makes, have the
-/// initial value: a flip, for example, moves two sides to the other triangle. For a mesh that does not change, [`side_map`](crate::OrientedWalk::side_map) is faster.
+/// initial value: a flip, for example, moves two sides to the other triangle. If edits take a side away and make it
+/// again, it may have its old value again. For a mesh that does not change,
+/// [`side_map`](crate::OrientedWalk::side_map) is faster.
 ///
 /// A value is found in O(values of the face). An edit that renames vertices, such as
 /// [`compact`](crate::MeshEdit::compact), takes O(corners) time.
@@ -18,7 +20,7 @@ use crate::traits::query::MeshQuery;
 /// ```
 /// use sixfold_core::{MeshEdit, MeshQuery, MeshWithData, OrientedWalk, Refusal, SideData};
 ///
-/// /// Marks the sides along `e`, and flips another edge. The sides are still marked.
+/// /// Marks the sides along `e`, and flips `other`, an edge of other faces. The sides are still marked.
 /// fn marked<M: MeshEdit + OrientedWalk>(mesh: M, e: M::Edge, other: M::Edge) -> Result<bool, Refusal<M>> {
 ///     let mut seams = SideData::new(&mesh, false);
 ///     for s in mesh.edge_sides(e) {
