@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::colours::dark_rules;
 use crate::figure::{Figure, TitledTable};
-use crate::{ReportPage, Section};
+use crate::{HOW_TO_USE, ReportPage, Section};
 use tables::{operations_table, plain_table, summary_table};
 
 const STYLE: &str = include_str!("html/style.css");
@@ -217,7 +217,7 @@ fn lab_section(place: usize, lab: &Section) -> Markup {
             @let (first, more) = lab.sentences.split_at(lab.sentences.len().min(SHOWN));
             (list(first))
             @if !more.is_empty() { details { summary { "More on the results" } (list(more)) } }
-            @if !lab.code.is_empty() { pre { (lab.code.join("\n")) } }
+            @if !lab.code.is_empty() { p { (HOW_TO_USE) } pre { (lab.code.join("\n")) } }
             @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
             @for table in &lab.tables { (table_section(table, "h3")) }
         }

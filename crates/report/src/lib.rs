@@ -95,6 +95,9 @@ pub struct ReportPage {
     pub missing: Vec<String>,
 }
 
+/// Stands above [`Section::code`].
+pub(crate) const HOW_TO_USE: &str = "To use it in your package:";
+
 /// A picture of a mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeshPicture {

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::ReportPage;
 use crate::figure::{Figure, Table, TitledTable};
+use crate::{HOW_TO_USE, ReportPage};
 
 impl ReportPage {
     /// Returns the page as Markdown. The page links to each figure as `figures/ID.svg`, where ID is
@@ -74,7 +74,8 @@ impl ReportPage {
             );
             write_list(&mut text, &section.sentences);
             if !section.code.is_empty() {
-                let _ = writeln!(text, "```text\n{}\n```\n", section.code.join("\n"));
+                let code = section.code.join("\n");
+                let _ = writeln!(text, "{HOW_TO_USE}\n\n```text\n{code}\n```\n");
             }
             if let Some(summary) = &section.summary {
                 write_table(&mut text, &summary.table());
