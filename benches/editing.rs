@@ -67,7 +67,7 @@ fn workloads(criterion: &mut Criterion) {
                 if input.mesh.face_count() > max_faces {
                     continue;
                 }
-                let Some(Ok(mut editor)) = pass.prepare(&backend, &input.mesh) else {
+                let Some(Ok(mut editor)) = backend.prepare_pass(pass, &input.mesh) else {
                     continue;
                 };
                 editor.time(&Series::once(&MachineClock::start()));

@@ -22,7 +22,7 @@ use std::hint::black_box;
 use gungraun::{Callgrind, prelude::*};
 use rayon::ThreadPoolBuilder;
 use sixfold::{Creases, shapes};
-use sixfold_study::{Backend, BackendRunner, MachineClock, Operation};
+use sixfold_study::{Backend, BackendRunner, MachineClock, Operation, SubdivisionJob};
 
 /// An operation that is ready to run.
 type Prepared = Box<dyn FnMut()>;
@@ -38,7 +38,7 @@ fn prepare(line: String) -> Prepared {
     // Callgrind counts only this thread. A pool of one thread runs subdivisions on this thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build_global();
     pool.expect("the only pool");
-    if let Some(job) = operation.subdivision_job() {
+    if let Some(job) = SubdivisionJob::of(operation) {
         let refiner = job.prepare(&backend, polygons, &Creases::default());
         let refiner = refiner.expect("a way of this structure");
         let mut refiner = refiner.expect("a closed manifold of triangles");

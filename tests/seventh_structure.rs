@@ -245,9 +245,11 @@ fn edited(mut editor: Box<dyn Editor>) -> (u64, f64) {
 fn a_seventh_structure_is_edited_like_the_others() {
     let polygons = shapes::geodesic(3).expect("small");
     for pass in EditPass::ALL {
-        assert!(pass.prepare(&lists(), &polygons).is_none());
+        assert!(lists().prepare_pass(pass, &polygons).is_none());
         let on = |backend: &Backend| {
-            let editor = pass.prepare(backend, &polygons).expect("it can be edited");
+            let editor = backend
+                .prepare_pass(pass, &polygons)
+                .expect("it can be edited");
             edited(editor.expect("triangles"))
         };
         let (done, sum) = on(&lists_with_all());

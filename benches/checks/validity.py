@@ -114,7 +114,7 @@ def measure(name, mesh, programs, sixfold, budget, scratch):
     truth_file, records = f"{scratch}/truth.json", f"{scratch}/records"
     chosen = ["--backends", ",".join(STRUCTURES)]
     run([programs, mesh, *chosen, "--budget", f"{budget * len(PROGRAMS)}s", "--json", truth_file])
-    run([programs, mesh, *chosen, "--budget", f"{budget * len(PROGRAMS)}s", "--record", records, "--traces"])
+    run([programs, mesh, *chosen, "--budget", f"{budget * len(PROGRAMS)}s", "--record", records])
     truth = {f["workload"]["name"]: times(f) for f in json.load(open(truth_file))["findings"]}
     built_in = {w: picked(sixfold, mesh, "--workload", w, budget, scratch) for w in sorted(set(PROGRAMS.values()))}
     rows = []
@@ -123,7 +123,12 @@ def measure(name, mesh, programs, sixfold, budget, scratch):
         if len(true) < 2:
             continue
         by_built_in, reads_of_built_in = built_in[workload]
-        by_recorded, reads_of_recorded = picked(sixfold, mesh, "--workload", f"{records}/{program}.toml", budget, scratch)
+        workload_file = Path(records) / f"{program}.toml"
+        with workload_file.open("w") as out:
+            trace = f"{records}/{program}.trace"
+            command = [sixfold, "workloads", "--trace", trace, mesh, "--budget", f"{budget}s"]
+            subprocess.run(command, stdout=out, check=True)
+        by_recorded, reads_of_recorded = picked(sixfold, mesh, "--workload", str(workload_file), budget, scratch)
         by_trace, _ = picked(sixfold, mesh, "--trace", f"{records}/{program}.trace", budget, scratch)
         every = [by_built_in, by_recorded, by_trace, reads_of_built_in, reads_of_recorded]
         predictions = dict(zip(METHODS, every))
@@ -191,10 +196,10 @@ def main():
     built = Path(os.environ.get("CARGO_TARGET_DIR") or checkout / "target") / "release"
     rows = []
     with tempfile.TemporaryDirectory() as scratch:
-        build = ["cargo", "build", "--release", "-p", "sixfold-cli"]
-        subprocess.run([*build, "--example", "programs", *AS_A_USER], cwd=checkout, check=True)
+        build = ["cargo", "build", "--release", "-p"]
+        subprocess.run([*build, "sixfold-measure", "--example", "programs", *AS_A_USER], cwd=checkout, check=True)
         programs = shutil.copy(built / "examples/programs", scratch)
-        subprocess.run([*build, "--bins"], cwd=checkout, check=True)
+        subprocess.run([*build, "sixfold-cli", "--bins"], cwd=checkout, check=True)
         sixfold = shutil.copy(built / "sixfold", scratch)
         meshes = {Path(mesh).stem: mesh for mesh in arguments.meshes}
         for name, shape in SHAPES.items() if not meshes else []:

@@ -101,7 +101,7 @@ fn measure(polygons: &PolygonMesh, samples: &mut Samples) -> Result<(), Box<dyn 
         }
         if faces <= MAX_SCANNED_FACES || !scans(&backend.info) {
             for pass in EditPass::ALL {
-                if let Some(editor) = pass.prepare(&backend, polygons) {
+                if let Some(editor) = backend.prepare_pass(pass, polygons) {
                     jobs.push((line(pass.name(), &backend), editor?));
                 }
             }

@@ -14,6 +14,7 @@ use crate::compare::{
     CompareSettings, Measurement, SettingChange, Verdict, compare, is_or_are, verdict_counts,
 };
 use crate::confidence::Confidence;
+#[cfg(feature = "csv")]
 use crate::csv::into_io_error;
 use crate::document::{Results, SCHEMA};
 use crate::finding::Finding;
@@ -137,6 +138,7 @@ impl HistoryRow {
 }
 
 /// The first columns of a line of the CSV.
+#[cfg(feature = "csv")]
 #[derive(Serialize)]
 struct DocumentColumns<'h> {
     group: usize,
@@ -199,11 +201,13 @@ impl History {
     /// # Errors
     ///
     /// Returns the errors of `writer`.
+    #[cfg(feature = "csv")]
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         write_lines(&self.groups, writer)
     }
 }
 
+#[cfg(feature = "csv")]
 fn write_lines(groups: &[HistoryGroup], writer: impl io::Write) -> io::Result<()> {
     let mut lines = csv::Writer::from_writer(writer);
     for (number, group) in (1..).zip(groups) {
@@ -230,6 +234,7 @@ impl HistoryGroup {
     /// # Errors
     ///
     /// Returns the errors of `writer`.
+    #[cfg(feature = "csv")]
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         write_lines(std::slice::from_ref(self), writer)
     }

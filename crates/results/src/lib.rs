@@ -12,6 +12,7 @@ mod compare;
 mod conclusions;
 mod confidence;
 mod corrected;
+#[cfg(feature = "csv")]
 mod csv;
 mod document;
 mod environment;
@@ -44,6 +45,7 @@ pub use compare::{
 pub use conclusions::{Conclusion, Fate, conclusions};
 pub use confidence::{Confidence, NotAConfidence};
 pub use corrected::corrected_times;
+#[cfg(feature = "csv")]
 pub use csv::write_csv_rows;
 pub use document::{Failed, FailureKind, Results, SCHEMA};
 pub use environment::{

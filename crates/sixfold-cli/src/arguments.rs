@@ -9,7 +9,6 @@ mod memory;
 mod neighbours;
 mod new;
 mod picking;
-mod programs;
 mod remeshing;
 mod render;
 mod repair;
@@ -42,7 +41,6 @@ pub(crate) use memory::Memory;
 pub(crate) use neighbours::Neighbours;
 pub(crate) use new::New;
 pub(crate) use picking::{Operations, Pick, Workloads};
-pub(crate) use programs::Programs;
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use repair::{ChosenSteps, Repair, joined_values, repair_options};
@@ -504,20 +502,7 @@ fn backend(name: &str) -> Result<String, String> {
     }
 }
 
-/// Parses `20s`, `500ms` or `2m`: above 0 and at most a week.
-fn duration(text: &str) -> Result<Duration, String> {
-    const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
-    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0)];
-    let parsed = units.into_iter().find_map(|(unit, seconds)| {
-        let number: f64 = text.strip_suffix(unit)?.parse().ok()?;
-        Some(number * seconds)
-    });
-    match parsed {
-        Some(seconds) if seconds > 0.0 && seconds <= MAX_S => Ok(Duration::from_secs_f64(seconds)),
-        Some(_) => Err("a time must be above 0 and at most a week".into()),
-        None => Err("write a time as 20s, 500ms or 2m".into()),
-    }
-}
+use sixfold_measure::command::arguments::duration;
 
 /// Parses a number of launches.
 fn launch_count(text: &str) -> Result<NonZeroU32, String> {

@@ -11,7 +11,8 @@ use sixfold_results::numbers::{counted, grouped};
 use serde::Serialize;
 
 use crate::arguments::repair_options;
-use crate::text::{hanging_indent, shell_word, width};
+use crate::shell::shell_word;
+use crate::text::{hanging_indent, width};
 
 /// Maximum number of places that are listed for a kind of fault.
 pub(crate) const SHOWN_PLACES: usize = 3;

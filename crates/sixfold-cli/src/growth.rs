@@ -17,7 +17,7 @@ use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::default_operations;
 use crate::progress::Bar;
-use crate::signs::{Signs, right};
+use crate::signs::{Signs, right, signed};
 use crate::study::{name_lists, print_end};
 use crate::tables::{stacked, styled, unbroken};
 use crate::text::{TextOutput, hanging_indent};
@@ -51,6 +51,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         paths: Vec::new(),
         part: None,
         stop: &session.stop,
+        pool: sixfold_study::pool_launches,
     };
     let report = measure(&settings, &launching, &Bar::new())?;
     print(&report, &mut session.text);
@@ -238,7 +239,7 @@ fn cell(size: &SizeReport, row: &ResultRow, signs: &mut Signs) -> Cell {
     let cache = weight.and_then(|weight| weight.fits_in);
     let cache = cache.map_or(" –".into(), |level| format!("L{level}"));
     let text = format!("{} {cache}", signs.figure(row));
-    signs.cell(text)
+    signed(signs, text)
 }
 
 /// Returns the table of the face counts at which structures outgrow caches.

@@ -1,44 +1,7 @@
-//! The `sixfold` command, and a command line for programs of users.
+//! The `sixfold` command.
 //!
-//! [`main`] makes a command line from programs that are generic over the mesh type. The command
-//! line measures the programs on every structure that can hold the mesh, and ranks the structures:
-//!
-//! ```no_run
-//! use std::process::ExitCode;
-//!
-//! use sixfold::MeshQuery;
-//! use sixfold_study::{Outcome, Program};
-//!
-//! /// Adds up the lengths of all edges.
-//! struct TotalLength;
-//!
-//! impl Program for TotalLength {
-//!     type Scratch<M: MeshQuery> = ();
-//!
-//!     fn name(&self) -> &str {
-//!         "total-length"
-//!     }
-//!
-//!     fn set_up<M: MeshQuery>(&self, _: &M) -> Result<(), String> {
-//!         Ok(())
-//!     }
-//!
-//!     fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> Outcome {
-//!         let length = |e| {
-//!             let [a, b] = mesh.edge_vertices(e).map(|v| mesh.position(v));
-//!             f64::from(a.distance(b))
-//!         };
-//!         let total = mesh.edges().map(length).sum();
-//!         Outcome::new(total, mesh.edge_count() as u64)
-//!     }
-//! }
-//!
-//! fn main() -> ExitCode {
-//!     sixfold_cli::main(TotalLength)
-//! }
-//! ```
-//!
-//! Only this crate handles arguments, standard output and exit codes:
+//! Only this crate, and the command line of programs in `sixfold-measure`, handle arguments, standard output and exit
+//! codes:
 //!
 //! | code | means |
 //! |---|---|
@@ -50,22 +13,18 @@
 
 mod arguments;
 mod baselines;
-mod column_table;
 mod compare;
 mod convert;
 mod distance;
 mod edits;
 mod facts_text;
-mod failure;
 mod faults_text;
 mod files;
-mod free_memory;
 mod generate;
 mod growth;
 mod help;
 mod history;
 mod inspect;
-mod launches;
 mod left_out;
 mod listed_folder;
 mod load;
@@ -78,10 +37,8 @@ mod neighbours;
 mod new;
 mod operations;
 mod orders;
-mod output;
 mod paper;
 mod pick;
-mod programs;
 mod progress;
 mod remesh;
 mod render;
@@ -92,13 +49,12 @@ mod results_table;
 mod schemes;
 mod seams;
 mod shape_check;
+mod shell;
 mod signs;
 mod study;
 mod subdivide;
 mod tables;
 mod teaching;
-mod text;
-mod triangulate;
 mod why;
 mod why_text;
 mod workloads;
@@ -112,20 +68,15 @@ use clap::FromArgMatches;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use sixfold::io::Format;
-use sixfold_study::{AllocationCounter, Heap, Suite};
+use sixfold_study::{AllocationCounter, Heap};
+
+// What the command line of programs has too.
+use sixfold_measure::command::{
+    column_table, exit_code, failure, free_memory, launches, output, text, triangulate,
+};
 
 use arguments::{Arguments, Command};
 use failure::Failure;
-
-/// Runs the command line of `programs`: a [`Program`](sixfold_study::Program), or a [`Suite`] of
-/// several programs.
-///
-/// The command line measures each program on each structure that can hold the meshes of the
-/// arguments. The option `--help` describes the arguments.
-pub fn main(programs: impl Into<Suite>) -> ExitCode {
-    launches::note_start();
-    exit_code(programs::run(programs.into()))
-}
 
 /// Counters of the allocator of the process.
 #[doc(hidden)]
@@ -137,6 +88,12 @@ impl<C: Heap + AllocationCounter> AllocatorCounters for C {}
 #[doc(hidden)]
 pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
     launches::note_start();
+    let width =
+        |size: Option<(terminal_size::Width, _)>| size.map(|(width, _)| usize::from(width.0));
+    text::set_terminals([
+        width(terminal_size::terminal_size_of(io::stdout())),
+        width(terminal_size::terminal_size_of(io::stderr())),
+    ]);
     let matches = help::definition().try_get_matches_from(words());
     let arguments = matches.and_then(|matches| Arguments::from_arg_matches(&matches));
     let done = match arguments.map(|arguments| arguments.command) {
@@ -181,17 +138,6 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
     exit_code(done)
 }
 
-/// Prints the message of a failure, and returns the exit code.
-fn exit_code(done: Result<ExitCode, Failure>) -> ExitCode {
-    match done {
-        Ok(code) => code,
-        Err(Failure { code, message }) => {
-            text::print_stderr(&format!("error: {message}"));
-            ExitCode::from(code)
-        }
-    }
-}
-
 /// Returns the words of the command line. `help --help` means `help`, which clap does not know.
 fn words() -> Vec<OsString> {
     let mut words: Vec<OsString> = std::env::args_os().collect();
@@ -209,7 +155,7 @@ fn print_clap_message(mut error: clap::Error) -> Result<ExitCode, Failure> {
         if Format::from_path(word).is_none() {
             return Err(help::unknown_command(word));
         }
-        let file = text::shell_word(Path::new(word));
+        let file = shell::shell_word(Path::new(word));
         return Err(Failure::usage(format!(
             "`{word}` is a file, not a command: did you mean `sixfold study {file}`?"
         )));
@@ -244,7 +190,3 @@ fn print_clap_message(mut error: clap::Error) -> Result<ExitCode, Failure> {
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct ReadmeExamples;
-
-#[cfg(doctest)]
-#[doc = include_str!("../../../reports/guide/your-own-program.md")]
-struct GuideExamples;

@@ -6,9 +6,12 @@ use std::path::{Path, PathBuf};
 use sixfold::glam::DVec3;
 use sixfold::io::{FileMesh, IgnoredKind, LeftOut, Narrowing, Notice, Place, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
-use sixfold::{Creases, FaceId, PolygonMesh, shapes};
+use sixfold::{Creases, FaceId, PolygonMesh};
 use sixfold_results::Results;
-use sixfold_study::{StudyMesh, sha256_of};
+use sixfold_study::StudyMesh;
+
+pub(crate) use sixfold_measure::command::load::{built_in, file_hash};
+use sixfold_measure::command::load::{into_study_mesh, print_left_out};
 
 use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;
@@ -80,43 +83,6 @@ pub(crate) fn for_inspection(
         left_out: Vec::new(),
         narrowing,
     })
-}
-
-/// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
-pub(crate) fn for_study(
-    path: &Path,
-    files: ReadFiles,
-    strict: bool,
-    triangulate: bool,
-) -> Result<StudyMesh, Failure> {
-    let (mut study_mesh, left_out, places) = into_study_mesh(path, read_mesh(path, files)?);
-    let file = shown(path);
-    if !left_out.is_empty() && strict {
-        let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-        let first = &left_out[0];
-        return Err(Failure::usage(format!(
-            "{file}: {faces}, the first at {first}: repair the file, or study it without --strict"
-        )));
-    }
-    if study_mesh.polygons.face_count() == 0 {
-        let what = match left_out.len() {
-            0 => "points but no faces".to_owned(),
-            n => format!(
-                "no faces except {}",
-                counted(n, "degenerate face", "degenerate faces")
-            ),
-        };
-        return Err(Failure::usage(format!(
-            "{file}: the file has {what}, so there is nothing to study: use `sixfold inspect` \
-             instead"
-        )));
-    }
-    print_left_out(path, &left_out);
-    study_mesh.file_sha256 = file_hash(path);
-    if triangulate {
-        study_mesh = triangulated(study_mesh, Some(&places))?;
-    }
-    Ok(study_mesh)
 }
 
 /// Reads a mesh without its degenerate faces. Also returns the creases in the file, and the place of
@@ -311,6 +277,16 @@ pub(crate) fn read_results(place: &Path) -> Result<Results, Failure> {
     Results::read_json(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 
+/// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
+pub(crate) fn for_study(
+    path: &Path,
+    files: ReadFiles,
+    strict: bool,
+    triangulate: bool,
+) -> Result<StudyMesh, Failure> {
+    sixfold_measure::command::load::for_study(path, files.into(), strict, triangulate)
+}
+
 /// Reads a mesh for a study as [`for_study`] does. Without a path, returns the built-in mesh.
 pub(crate) fn mesh_or_built_in(
     path: Option<&Path>,
@@ -322,42 +298,4 @@ pub(crate) fn mesh_or_built_in(
         Some(path) => for_study(path, files, strict, triangulate),
         None => Ok(built_in()),
     }
-}
-
-pub(crate) fn built_in() -> StudyMesh {
-    StudyMesh::new("built-in mesh", shapes::built_in_mesh())
-}
-
-/// Returns the SHA-256 of a regular file; `None` if there is no such file. A pipe can be read only
-/// once, so it has no hash.
-pub(crate) fn file_hash(path: &Path) -> Option<String> {
-    let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
-    match is_file {
-        true => sha256_of(fs::File::open(path).ok()?).ok(),
-        false => None,
-    }
-}
-
-fn print_left_out(path: &Path, left_out: &[LeftOut]) {
-    let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-    print_places(
-        &format!("{}: left out {faces}", shown(path)),
-        left_out.iter().map(ToString::to_string),
-    );
-}
-
-fn into_study_mesh(path: &Path, mesh: FileMesh) -> (StudyMesh, Vec<LeftOut>, PolygonPlaces) {
-    let facts = mesh.facts();
-    let (polygons, left_out, places) = mesh.into_polygons_with_places();
-    let mut changes = Vec::new();
-    if !left_out.is_empty() {
-        let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-        changes.push(format!("left out {faces}"));
-    }
-    let study_mesh = StudyMesh {
-        changes,
-        left_out_faces: left_out.len(),
-        ..StudyMesh::with_facts(shown(path), polygons, facts)
-    };
-    (study_mesh, left_out, places)
 }

@@ -4,7 +4,6 @@ mod draw;
 mod folder;
 mod labs;
 mod merge;
-mod meshes;
 mod pooled_table;
 
 use std::process::ExitCode;
@@ -32,10 +31,10 @@ use sixfold_results::numbers::counted;
 pub(crate) use draw::run as draw;
 pub(crate) use labs::{Lab, LabSelection};
 pub(crate) use merge::run as merge;
-pub(crate) use meshes::Shard;
+pub(crate) use sixfold_measure::command::meshes::Shard;
 
 use folder::Folder;
-pub(crate) use meshes::{Mesh, find_mesh, find_meshes};
+pub(crate) use sixfold_measure::command::meshes::{Mesh, find_mesh, find_meshes};
 
 /// The text of [`FailureKind::NoneHolds`].
 const NONE_HOLDS: &str = "none of the selected backends can hold the mesh: see `sixfold inspect`, or repair the mesh with \
@@ -265,6 +264,7 @@ impl FolderRun<'_> {
             paths: mesh.path.as_deref().into_iter().collect(),
             part: Some(Part::Mesh(mesh.name.clone())),
             stop: self.stop,
+            pool: sixfold_study::pool_launches,
         };
         let bar = Bar::after(&format!("{position}, {}: ", mesh.name));
         match measure(study_mesh, self.settings, &launching, &bar) {

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold_report::ReportPage;
 use sixfold_results::numbers::counted;
-use sixfold_results::{Agreement, FailureKind, Finding, Policy, Report, ResultRow, Results};
+use sixfold_results::{Agreement, FailureKind, Policy, Report, ResultRow, Results};
 use sixfold_study::StudyMesh;
 
 use crate::arguments::ResultFiles;
@@ -18,7 +18,8 @@ use crate::launches::{self, Launch};
 use crate::mesh_picture::with_picture;
 use crate::output::{Output, check_outputs, uses_stdout};
 use crate::progress::{INTERRUPTED, interrupt_flag};
-use crate::text::{TextOutput, print_notice, print_stderr, take_notices};
+use crate::text::{TextOutput, print_stderr, take_notices};
+pub(crate) use sixfold_measure::command::run::{command_line, warn_of_debug_build, with_command};
 
 /// The exit code if backends found different results for the same work, or if a part could not be measured.
 const MISMATCH: u8 = 1;
@@ -138,38 +139,6 @@ impl Session {
         }
         done
     }
-}
-
-/// Converts the result of a lab to a finding. Adds the command line, and whether the meshes were
-/// triangulated.
-pub(crate) fn with_command(finding: impl Into<Finding>, triangulate: bool) -> Finding {
-    let mut finding = finding.into();
-    let run = finding.run_mut();
-    run.command = Some(command_line());
-    run.settings.triangulate = triangulate;
-    finding
-}
-
-/// Prints a note if the program was built without optimisation.
-pub(crate) fn warn_of_debug_build() {
-    if cfg!(debug_assertions) {
-        print_notice("note: the times of a debug build are not meaningful: build with --release");
-    }
-}
-
-/// Returns the command line with quotes, so that a shell can run it again.
-pub(crate) fn command_line() -> String {
-    let words = std::env::args_os().skip(1);
-    let words = words.map(|word| word.to_string_lossy().into_owned());
-    let words: Vec<String> = [executable()].into_iter().chain(words).collect();
-    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
-}
-
-/// Returns the name of the running program, such as `sixfold`.
-fn executable() -> String {
-    let path = std::env::args_os().next().map(PathBuf::from);
-    let stem = path.and_then(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
-    stem.unwrap_or_else(|| "sixfold".into())
 }
 
 /// Prints the final messages of a command and returns its exit code. An error of writing

@@ -14,7 +14,7 @@ use crate::launches::{self, Launching, Work};
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
-use crate::signs::{Signs, right};
+use crate::signs::{Signs, right, signed};
 use crate::study::print_end;
 use crate::tables::{stacked, unbroken};
 use crate::text::TextOutput;
@@ -39,6 +39,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
         paths: mesh.into_iter().collect(),
         part: None,
         stop: &session.stop,
+        pool: sixfold_study::pool_launches,
     };
     let faces = study_mesh.polygons.face_count();
     let work = Work::new(faces, SpatialTask::ALL.len(), &[]);
@@ -90,7 +91,7 @@ fn table_of(report: &NeighboursReport, indices: &[&IndexReport], signs: &mut Sig
                 .rows(task.name())
                 .find(|row| row.backend == index.name);
             let text = row.map_or("–".into(), |row| signs.figure(row));
-            line.push(signs.cell(text));
+            line.push(signed(signs, text));
         }
         table.add_row(line);
     }

@@ -83,8 +83,8 @@ fn checkout(given: Option<&Path>) -> Result<String, Failure> {
 /// Returns the absolute path of `folder` if it is a repository of Sixfold.
 fn checkout_at(folder: &Path) -> Option<PathBuf> {
     let found = folder.canonicalize().ok()?;
-    let cli = found.join("crates/sixfold-cli/Cargo.toml");
-    cli.is_file().then_some(found)
+    let measure = found.join("crates/measure/Cargo.toml");
+    measure.is_file().then_some(found)
 }
 
 fn is_package_name(name: &str) -> bool {

@@ -16,7 +16,7 @@ use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
-use crate::signs::{Signs, right};
+use crate::signs::{Signs, right, signed};
 use crate::study::{name_lists, print_end};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
@@ -44,6 +44,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         paths: mesh.into_iter().collect(),
         part: None,
         stop: &session.stop,
+        pool: sixfold_study::pool_launches,
     };
     let report = measure(&study_mesh, &settings, &launching, &Bar::new())?;
     print(&report, &mut session.text);
@@ -142,7 +143,7 @@ fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> Str
         for order in Order::ALL {
             let row = backend_rows.iter().find(|row| row.case == order.name());
             let text = row.map_or("–".into(), |row| signs.figure(row));
-            line.push(signs.cell(text));
+            line.push(signed(signs, text));
         }
         let effect = comparison.orders.iter().find(|e| e.backend == *backend);
         let matters = effect.is_some_and(|effect| effect.matters);

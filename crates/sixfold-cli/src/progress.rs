@@ -1,43 +1,25 @@
 //! Progress bars on a terminal, progress as lines, and the handling of Ctrl-C.
 
-use std::cell::RefCell;
 use std::io::{self, IsTerminal};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sixfold_results::Policy;
-use sixfold_study::{HeapGuard, Progress};
+pub(crate) use sixfold_measure::command::progress::{INTERRUPTED, interrupt_flag};
+use sixfold_measure::command::progress::{Told, print_step};
+use sixfold_study::Progress;
 
-use crate::launches::Launch;
 use crate::output::exit_without_drafts;
-use crate::text::{print_stderr, sanitize};
+use crate::text::print_stderr;
 
 /// Number of steps of a full bar.
 const STEPS: u64 = 1000;
-
-/// The environment variable that asks for progress as lines, if its value is `lines`.
-pub(crate) const PROGRESS: &str = "SIXFOLD_PROGRESS";
-/// The value of [`PROGRESS`] that asks for lines.
-pub(crate) const LINES: &str = "lines";
-/// The start of a line of progress.
-pub(crate) const PROGRESS_MARK: &str = "progress: ";
-
-/// Prints a step as a line, if the environment asks for lines.
-fn print_step(what: &str) {
-    if std::env::var_os(PROGRESS).is_some_and(|value| value == LINES) {
-        print_stderr(&format!("{PROGRESS_MARK}{}", sanitize(what)));
-    }
-}
 
 /// A progress bar on standard error. Without a terminal, it is shown only if the environment asks for
 /// lines.
 pub(crate) struct Bar {
     bar: Option<ProgressBar>,
     prefix: String,
-    /// The last percentage that a launch told the first process, and what was measured.
-    told: RefCell<(u64, String)>,
+    told: Told,
 }
 
 impl Bar {
@@ -58,7 +40,7 @@ impl Bar {
         Self {
             bar,
             prefix: prefix.to_owned(),
-            told: RefCell::new((u64::MAX, String::new())),
+            told: Told::default(),
         }
     }
 
@@ -66,16 +48,7 @@ impl Bar {
     /// `geodesics: `.
     pub(crate) fn set(&self, done: f64, what: &str) {
         let Some(bar) = &self.bar else {
-            let percent = (100.0 * done) as u64;
-            // The first process wakes up for each line, which would disturb the samples.
-            if Launch::current().is_some() {
-                let measured = what.split_once(": ").map_or("", |(measured, _)| measured);
-                let new = (percent, measured.to_owned());
-                if self.told.replace(new.clone()) == new {
-                    return;
-                }
-            }
-            return print_step(&format!("{percent} % {}{what}", self.prefix));
+            return self.told.print(done, &self.prefix, what);
         };
         bar.set_position((done * STEPS as f64) as u64);
         bar.set_message(what.to_owned());
@@ -207,9 +180,6 @@ impl StatusLine {
     }
 }
 
-/// The exit code of an interrupted command.
-pub(crate) const INTERRUPTED: u8 = 4;
-
 /// Ends the program at the first Ctrl-C. Used by commands without partial results.
 pub(crate) fn exit_on_interrupt() {
     // If the handler cannot be set, Ctrl-C keeps its default effect.
@@ -217,26 +187,4 @@ pub(crate) fn exit_on_interrupt() {
         print_stderr("interrupted");
         exit_without_drafts(INTERRUPTED.into());
     });
-}
-
-/// Returns a flag that the first Ctrl-C sets. The second Ctrl-C ends the program.
-///
-/// The policy `heap` is applied first: the handler starts a thread, and glibc reads the number of
-/// heaps when the first thread starts.
-pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
-    // No policy is active yet. If one were, the measurement would report the conflict.
-    if let Ok(guard) = HeapGuard::acquire(heap) {
-        guard.hold_until_exit();
-    }
-    /// The exit code that shells use for an interrupted program.
-    const SIGINT_CODE: i32 = 130;
-    let flag = Arc::new(AtomicBool::new(false));
-    let handler_flag = Arc::clone(&flag);
-    // If the handler cannot be set, Ctrl-C keeps its default effect.
-    let _ = ctrlc::set_handler(move || {
-        if handler_flag.swap(true, Ordering::Relaxed) {
-            exit_without_drafts(SIGINT_CODE);
-        }
-    });
-    flag
 }

@@ -6,7 +6,7 @@ use sixfold_results::{
 };
 use sixfold_study::Operation;
 
-use crate::signs::{Signs, right};
+use crate::signs::{Signs, right, signed};
 use crate::tables::{stacked, unbroken};
 use crate::text::hanging_indent;
 use sixfold_results::numbers::figure;
@@ -106,7 +106,7 @@ fn table_of_backends(
                 Some(row) => figure_of(row, intervals, signs),
                 None => signs.record('–').into(),
             };
-            signs.cell(text)
+            signed(signs, text)
         }));
         table.add_row(line);
         let mut below = |name: &str, meaning: &str, figure: &dyn Fn(&ResultRow) -> Option<f64>| {

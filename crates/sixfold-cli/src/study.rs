@@ -46,7 +46,10 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     }
     let found = match launch.and_then(|launch| launch.part.as_ref()) {
         Some(Part::Mesh(name)) => many::find_mesh(&arguments.meshes, name)?,
-        Some(Part::Lab(lab)) => return many::run_lab(arguments, &settings, *lab),
+        Some(Part::Lab(lab)) => {
+            let lab = lab.parse().map_err(Failure::usage)?;
+            return many::run_lab(arguments, &settings, lab);
+        }
         None => arguments.meshes.first().cloned(),
     };
     let mesh = found.as_deref();
@@ -93,6 +96,7 @@ fn run_single(
         paths: mesh.into_iter().collect(),
         part: None,
         stop: &session.stop,
+        pool: sixfold_study::pool_launches,
     };
     let measured = measure(&study_mesh, settings, &launching, &Bar::new());
     match measured {

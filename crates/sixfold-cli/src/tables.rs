@@ -5,6 +5,7 @@ use sixfold::structure_infos;
 
 use crate::results_table::STYLE;
 use crate::text::width;
+pub(crate) use sixfold_measure::command::column_table::stacked;
 
 /// Returns an empty table with `header`. Cells break only if the table is wider than the terminal.
 pub(crate) fn table(header: Vec<Cell>) -> Table {
@@ -28,31 +29,6 @@ pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
         names.set_padding((0, 1));
     }
     table
-}
-
-/// Returns the table that `table` makes of all columns. If this table is wider than the terminal,
-/// returns several tables below one another, each with some of the columns.
-pub(crate) fn stacked<C>(columns: &[C], mut table: impl FnMut(&[C]) -> String) -> String {
-    for parts in 1..=columns.len() {
-        let size = columns.len().div_ceil(parts);
-        let tables: Vec<String> = columns.chunks(size).map(&mut table).collect();
-        let fits = |table: &String| table.lines().all(|line| visible_width(line) <= width());
-        if size == 1 || tables.iter().all(fits) {
-            return tables.join("\n\n");
-        }
-    }
-    table(columns)
-}
-
-/// Returns the number of columns of a line, without escape sequences for bold text.
-fn visible_width(line: &str) -> usize {
-    let mut parts = line.split('\u{1b}');
-    let first = parts.next().map_or(0, |part| part.chars().count());
-    let after = |part: &str| {
-        part.split_once('m')
-            .map_or(0, |(_, text)| text.chars().count())
-    };
-    first + parts.map(after).sum::<usize>()
 }
 
 /// Returns an empty table of figures with `header` whose cells never break. Use it with [`stacked`].

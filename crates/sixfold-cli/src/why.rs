@@ -50,6 +50,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         paths: mesh.into_iter().collect(),
         part: None,
         stop: &session.stop,
+        pool: sixfold_study::pool_launches,
     };
     let why = measure(&study_mesh, &settings, &launching, &Bar::new())?;
     print(&why, !arguments.relations.is_empty(), &mut session.text);

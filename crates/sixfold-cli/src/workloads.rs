@@ -2,14 +2,19 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use serde_json::json;
 use sixfold::UnknownName;
-use sixfold_study::{Action, Workload, built_in, built_ins};
+use sixfold_study::{
+    Action, Effort, ProgramSettings, Trace, Workload, built_in, built_ins, workload_of_trace,
+};
 
 use crate::arguments::Workloads;
 use crate::failure::Failure;
+use crate::load;
 use crate::output::{Output, is_stdout};
+use crate::progress::{INTERRUPTED, interrupt_flag};
 use crate::text::{TextOutput, hanging_indent};
 
 /// Maximum size of a workload file in bytes.
@@ -24,6 +29,9 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
         text.finish()?;
         return Ok(ExitCode::SUCCESS);
     }
+    if let Some(path) = &arguments.trace {
+        return print_trace(path, arguments);
+    }
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     text.print_line(&match arguments.operations {
@@ -32,6 +40,41 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     });
     let all: Vec<Workload> = built_ins().filter_map(|(name, _)| built_in(name)).collect();
     text.finish_with_json(json, &json!(all))
+}
+
+/// Prints the calls of a trace as a workload file.
+fn print_trace(path: &Path, arguments: &Workloads) -> Result<ExitCode, Failure> {
+    let trace = read_trace(path)?;
+    let mesh = arguments.mesh.as_deref();
+    let mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
+    let settings = ProgramSettings {
+        effort: Effort::Budget(arguments.budget),
+        ..ProgramSettings::default()
+    };
+    let stop = interrupt_flag(settings.heap);
+    let recording = workload_of_trace(&mesh, &trace, &settings, &stop);
+    let recording = recording.map_err(Failure::usage)?;
+    if stop.load(Ordering::Relaxed) {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    let mut text = TextOutput::new(true);
+    text.print_line(recording.workload_file().trim_end());
+    text.finish()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Reads a trace. Without a name of the program in the file, it has the name of the file.
+pub(crate) fn read_trace(path: &Path) -> Result<Trace, Failure> {
+    let shown = path.display().to_string();
+    let cannot_read = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
+    let file = std::fs::File::open(path).map_err(cannot_read)?;
+    let trace = Trace::read(&shown, std::io::BufReader::new(file));
+    let mut trace = trace.map_err(Failure::usage)?;
+    if trace.program.is_empty() {
+        let stem = path.file_stem().unwrap_or(path.as_os_str());
+        trace.program = stem.to_string_lossy().into_owned();
+    }
+    Ok(trace)
 }
 
 /// Returns the built-in workload with the name `word`. If no built-in workload has this name, reads

@@ -119,15 +119,19 @@ fn recorded_programs_run_again_on_every_structure() {
         programs,
         "--record",
         "r",
-        "--traces",
         "--rounds",
         "2",
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(run.stdout.matches("Recorded: ").count(), 3, "{run:?}");
     for program in programs.split(',') {
-        let workload = text(&sixfold, &format!("r/{program}.toml"));
-        assert!(workload.contains("[mix]"), "{workload}");
+        let trace = format!("r/{program}.trace");
+        let options = ["--triangulate", "--budget", "100ms"];
+        let run =
+            sixfold.run(&[&["workloads", "--trace", &trace, "grid.obj"], &options[..]].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert!(run.stdout.contains("[mix]"), "{run:?}");
+        sixfold.file(&format!("r/{program}.toml"), &run.stdout);
         for option in ["--workload", "--trace"] {
             let ending = if option == "--trace" { "trace" } else { "toml" };
             let file = format!("r/{program}.{ending}");
@@ -149,8 +153,10 @@ fn recorded_programs_run_again_on_every_structure() {
             let ranking = finding["ranking"].as_array().expect("a list");
             assert!(ranking.len() >= 3, "{finding}");
             let words: Vec<&str> = run.stdout.split_whitespace().collect();
-            assert!(words.join(" ").contains("own work"), "{run:?}");
-            assert_ne!(finding["workload"]["own_ns"], 0.0, "{finding}");
+            // Whether the program's own work can be measured depends on the machine.
+            let own_ns = finding["workload"]["own_ns"].as_f64().expect("a number");
+            let is_told = words.join(" ").contains("own work");
+            assert_eq!(is_told, own_ns > 0.0, "{run:?}");
         }
     }
     let trace = [
@@ -256,11 +262,11 @@ fn a_new_package_is_written_once() {
     let manifest = text(&sixfold, "my-program/Cargo.toml");
     assert!(manifest.contains("name = \"my-program\""), "{manifest}");
     let (_, path) = manifest
-        .split_once("sixfold-cli = { path = \"")
+        .split_once("sixfold-measure = { path = \"")
         .expect("a dependency");
     let (path, _) = path.split_once('"').expect("a path");
     assert!(std::path::Path::new(path).join("Cargo.toml").is_file());
-    assert!(text(&sixfold, "my-program/src/main.rs").contains("sixfold_cli::main"));
+    assert!(text(&sixfold, "my-program/src/main.rs").contains("sixfold_measure::main"));
     for (arguments, message) in [
         (
             &["new", "my-program", "--checkout", checkout][..],

@@ -81,23 +81,28 @@ impl Sixfold {
         Run::from_output(self.command(arguments).output().expect("the binary runs"))
     }
 
-    /// Runs the example `programs`, the command line of a user's programs. Cargo builds it together
-    /// with the tests.
+    /// Runs the example `programs`, the command line of a user's programs.
     pub(crate) fn run_programs(&self, arguments: &[&str]) -> Run {
         self.run_example("programs", arguments)
     }
 
-    /// Runs an example of this package.
+    /// Runs an example of the package `sixfold-measure`.
     pub(crate) fn run_example(&self, name: &str, arguments: &[&str]) -> Run {
         let mut command = self.example(name);
         command.args(arguments);
         Run::from_output(command.output().expect("the example runs"))
     }
 
-    /// Returns the command of an example of this package.
+    /// Returns the command of an example of the package `sixfold-measure`. Cargo builds it together with the tests of the
+    /// workspace.
     pub(crate) fn example(&self, name: &str) -> Command {
         let folder = Path::new(env!("CARGO_BIN_EXE_sixfold")).parent();
         let example = folder.expect("a folder").join("examples").join(name);
+        assert!(
+            example.is_file(),
+            "cargo build --examples --package sixfold-measure makes {}",
+            example.display()
+        );
         let mut command = Command::new(example);
         command.current_dir(self.folder.path());
         command

@@ -16,9 +16,10 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
+use sixfold_measure::{Job, Task};
 use sixfold_results::Policy;
 use sixfold_study::{Backend, Clock, HeapGuard, MachineClock, Operation, Series};
-use sixfold_workload::{Access, Draw, Job, Route, Schedule, Task, built_in, prepare_mix};
+use sixfold_workload::{Access, Draw, Route, Schedule, built_in, prepare_mix};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 const OPERATIONS: [&str; 8] = [

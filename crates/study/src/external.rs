@@ -14,10 +14,7 @@
 //! measures the time of its own runs, so the times do not include the communication with Sixfold.
 //! `benches/external/README.md` describes the protocol.
 
-pub(crate) mod isolated;
-mod program;
-mod subject;
-
+use std::ffi::OsString;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -30,10 +27,10 @@ use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold_core::Counts;
 use tempfile::TempDir;
 
-use program::{Handshake, Program};
+use sixfold_measure::TimedBackend;
+use sixfold_measure::external::program::{Handshake, Program};
+use sixfold_measure::external::subject::ExternalSubject;
 use sixfold_results::{BackendReport, ExternalReport, HeapReport, Policy, sanitize};
-use sixfold_workload::TimedBackend;
-use subject::ExternalSubject;
 
 /// Placeholder for the path of the mesh.
 const MESH: &str = "{mesh}";
@@ -103,9 +100,9 @@ impl FromStr for External {
 }
 
 impl External {
-    fn arguments(&self, path: &Path) -> Vec<String> {
+    fn arguments(&self, path: &Path) -> Vec<OsString> {
         let path = path.to_string_lossy();
-        let word = |word: &String| word.replace(MESH, &path);
+        let word = |word: &String| word.replace(MESH, &path).into();
         self.command.iter().map(word).collect()
     }
 }

@@ -3,17 +3,14 @@
 use std::io;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use sixfold::repair::Diagnosis;
-use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
+use sixfold::{BuildError, Capabilities};
 use sixfold_core::Counts;
 
 use crate::refusal::BuildInput;
+use sixfold_measure::StudyMesh;
 use sixfold_results::{BackendReport, MeshReport, SCHEMA, write_json};
 use sixfold_workload::Backend;
-
-/// Number of bytes that are hashed at once.
-const HASH_BLOCK: usize = 1 << 16;
 
 /// The facts of a mesh, and the backends that can hold it.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -35,120 +32,6 @@ impl Inspection {
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
-}
-
-/// A mesh to inspect or to measure, with its facts.
-#[derive(Clone, Debug)]
-pub struct StudyMesh {
-    /// Origin of the mesh, such as its file name.
-    pub name: String,
-    /// Topological facts of the file. If `polygons` was triangulated, the facts describe the
-    /// triangulated mesh, but the number of degenerate faces is that of the file.
-    pub facts: Facts,
-    /// The mesh to measure, without the degenerate faces of the file.
-    pub polygons: PolygonMesh,
-    /// Differences between `polygons` and the file, as phrases.
-    pub changes: Vec<String>,
-    /// The number of degenerate faces of the file that `polygons` does not have.
-    pub left_out_faces: usize,
-    /// The number of faces of the file that were cut into triangles.
-    pub cut_faces: usize,
-    /// The SHA-256 of the file, as 64 hexadecimal digits; `None` if the mesh was not read from a
-    /// regular file.
-    pub file_sha256: Option<String>,
-    /// A picture of the mesh for reports: a PNG file in Base64; `None` if no picture was drawn.
-    pub picture: Option<String>,
-}
-
-impl StudyMesh {
-    /// Creates a mesh to study and computes its facts. The expected time is O(corners).
-    pub fn new(name: impl Into<String>, polygons: PolygonMesh) -> Self {
-        let facts = Facts::from_polygons(&polygons);
-        Self::with_facts(name, polygons, facts)
-    }
-
-    /// Creates a mesh to study from known facts, without changes.
-    pub fn with_facts(name: impl Into<String>, polygons: PolygonMesh, facts: Facts) -> Self {
-        Self {
-            name: name.into(),
-            facts,
-            polygons,
-            changes: Vec::new(),
-            left_out_faces: 0,
-            cut_faces: 0,
-            file_sha256: None,
-            picture: None,
-        }
-    }
-
-    /// Returns the name, the facts and the hashes of the mesh, in the format of documents. The time
-    /// is O(vertices + corners).
-    pub fn report(&self) -> MeshReport {
-        MeshReport {
-            name: self.name.clone(),
-            facts: self.facts.clone(),
-            changes: self.changes.clone(),
-            left_out_faces: self.left_out_faces,
-            cut_faces: self.cut_faces,
-            sha256: content_hash(&self.polygons),
-            file_sha256: self.file_sha256.clone(),
-            picture: self.picture.clone(),
-        }
-    }
-}
-
-/// Returns the SHA-256 of the positions and faces, as 64 hexadecimal digits. The hashed numbers
-/// have 32 bits, each with the lowest byte first: the number of vertices, three coordinates for
-/// each vertex, and for each face the number of corners and the vertices of the corners.
-fn content_hash(polygons: &PolygonMesh) -> String {
-    let mut hash = Sha256::new();
-    let mut block = vec![0; HASH_BLOCK];
-    let mut length = 0;
-    // This crate is compiled for size, so the loop is written without iterators that would be called.
-    let mut push = |number: [u8; 4]| {
-        block[length..length + 4].copy_from_slice(&number);
-        length += 4;
-        if length == HASH_BLOCK {
-            hash.update(&block);
-            length = 0;
-        }
-    };
-    push((polygons.vertex_count() as u32).to_le_bytes());
-    for position in polygons.positions() {
-        for coordinate in position.to_array() {
-            push(coordinate.to_le_bytes());
-        }
-    }
-    for (_, face) in polygons.faces().iter() {
-        push((face.len() as u32).to_le_bytes());
-        for &vertex in face {
-            push((vertex.index() as u32).to_le_bytes());
-        }
-    }
-    hash.update(&block[..length]);
-    hex(&hash.finalize())
-}
-
-/// Returns the SHA-256 of all bytes that `reader` returns, as 64 hexadecimal digits.
-///
-/// # Errors
-///
-/// Returns the errors of `reader`.
-pub fn sha256_of(mut reader: impl io::Read) -> io::Result<String> {
-    let mut hash = Sha256::new();
-    let mut buffer = vec![0; HASH_BLOCK];
-    loop {
-        match reader.read(&mut buffer) {
-            Ok(0) => return Ok(hex(&hash.finalize())),
-            Ok(count) => hash.update(&buffer[..count]),
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Checks which backends can hold the mesh, without building the backends. The expected time is

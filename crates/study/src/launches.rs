@@ -1,19 +1,17 @@
 //! Pools the documents of several launches: fresh processes that measured the same.
 
+use sixfold_measure::Operation;
 use sixfold_results::launches::{LaunchRows, pool_rows};
-use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Results, Run, Timer};
-use sixfold_workload::{Backend, Operation};
+use sixfold_results::{BackendReport, Finding, MergeError, Report, ResultRow, Results};
+use sixfold_workload::Backend;
 
 use crate::labs::growth::pool_growth;
 use crate::labs::neighbours::pool_neighbours;
 use crate::labs::orders::pool_orders;
-use crate::labs::pick::pool_picks;
 use crate::labs::study::conclude;
 use crate::labs::why::pool_why;
-
-/// The environment variable that tells a process of the command `sixfold` that it is a launch. External programs,
-/// which may be such commands themselves, do not get it.
-pub const LAUNCH_VARIABLE: &str = "SIXFOLD_LAUNCH";
+use sixfold_measure::launches::{pool_runs, pool_timers};
+use sixfold_measure::pick::pool_picks;
 
 /// Pools documents of the same work, one for each launch, as one document. Documents that were pooled before
 /// add all of their launches.
@@ -26,28 +24,7 @@ pub const LAUNCH_VARIABLE: &str = "SIXFOLD_LAUNCH";
 ///
 /// Returns an error if a document does not repeat the others, see [`Results::check_repeats`].
 pub fn pool_launches(launches: Vec<Results>) -> Result<Results, MergeError> {
-    for (i, launch) in launches.iter().enumerate() {
-        launches[..i]
-            .iter()
-            .try_for_each(|earlier| earlier.check_repeats(launch))?;
-    }
-    let mut pooled = Results::default();
-    let mut groups: Vec<Vec<Finding>> = Vec::new();
-    let mut failures = Vec::new();
-    for launch in launches {
-        pooled.plan(launch.planned);
-        pooled.add_notices(launch.notices);
-        failures.extend(launch.failures);
-        for finding in launch.findings {
-            match groups.iter_mut().find(|group| group[0].repeats(&finding)) {
-                Some(group) => group.push(finding),
-                None => groups.push(vec![finding]),
-            }
-        }
-    }
-    pooled.extend(groups.into_iter().filter_map(pool_group));
-    pooled.add_failures(failures);
-    Ok(pooled)
+    sixfold_measure::launches::pool(launches, pool_group)
 }
 
 /// Pools findings that repeat each other.
@@ -67,14 +44,6 @@ fn pool_group(group: Vec<Finding>) -> Option<Finding> {
 fn all<T: TryFrom<Finding>>(findings: Vec<Finding>) -> Vec<T> {
     let found = findings.into_iter().map(T::try_from);
     found.filter_map(Result::ok).collect()
-}
-
-/// Returns the run of several launches.
-pub(crate) fn pool_runs<'r>(runs: impl IntoIterator<Item = &'r Run>) -> Run {
-    let mut runs = runs.into_iter();
-    let mut pooled = runs.next().cloned().unwrap_or_default();
-    runs.for_each(|run| pooled.add_launches(run));
-    pooled
 }
 
 /// Pools the studies of one mesh.
@@ -135,10 +104,4 @@ fn pool_backends(launches: &[Report]) -> Vec<BackendReport> {
         }
     }
     pooled
-}
-
-/// Returns the clock with the largest error.
-pub(crate) fn pool_timers(timers: impl Iterator<Item = Timer>) -> Option<Timer> {
-    let share = |timer: &Timer| timer.largest_share.unwrap_or(0.0);
-    timers.max_by(|a, b| share(a).total_cmp(&share(b)))
 }

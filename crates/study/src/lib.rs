@@ -12,12 +12,13 @@
 //! and reports differences between the three counts. [`why`] counts the bytes that queries read,
 //! and compares the times of the queries with the speed of memory.
 //!
-//! The results are those of `sixfold-results`, which has the document, comparisons and means.
+//! The engine that measures is that of `sixfold-measure`, which also measures programs of users. The results are those of
+//! `sixfold-results`, which has the document, comparisons and means.
 //!
 //! # Effect on the process
 //!
-//! [`study()`], [`orders`], [`growth`], [`neighbours`], [`pick`], [`pick_for_programs`],
-//! [`serve_program`] and [`BackendRunner`] change the settings of malloc for the whole process while
+//! [`study()`], [`orders`], [`growth`], [`neighbours`], [`pick`], [`pick_for_programs`] and
+//! [`BackendRunner`] change the settings of malloc for the whole process while
 //! they measure, so that freed pages stay in the process ([`Policy::Kept`](sixfold_results::Policy::Kept)). The settings are
 //! restored at the end; [`HeapGuard`] lists what is restored. Two measurements at the same time must
 //! have the same [`Policy`](sixfold_results::Policy): the second one otherwise returns a [`HeapPolicyConflict`]. If memory
@@ -29,24 +30,21 @@
 //! because a signal handler sets it, and because it is also read where no progress is reported:
 //! between the runs of a sample, and while an external program works.
 
-mod engine;
+#[cfg(test)]
+mod engine_cost;
 mod external;
 mod inspect;
 mod labs;
 mod launches;
-mod refusal;
 #[cfg(test)]
 mod results_tests;
 mod runner;
-mod usage;
 
-pub use engine::effort::Effort;
-pub use engine::heap::free_memory;
-pub use engine::measure::Progress;
-pub use engine::run::start_run;
-pub use external::isolated::{ChildTask, Isolation, serve_program};
+// The measuring engine has the same paths here.
+use sixfold_measure::{engine, refusal};
+
 pub use external::{EXTERNAL_TIMEOUT, External, ExternalError};
-pub use inspect::{Inspection, StudyMesh, inspect, inspect_diagnosed, sha256_of};
+pub use inspect::{Inspection, inspect, inspect_diagnosed};
 pub use labs::growth::{
     GrowthError, GrowthSettings, SCALABLE_SHAPES, ScalableShape, growth, growth_bytes, growth_plan,
 };
@@ -54,23 +52,31 @@ pub use labs::memory::{CROWDED, audit, count_allocations, none_holds};
 pub use labs::neighbours::{NeighboursError, NeighboursSettings, neighbour_indices, neighbours};
 pub use labs::orders::{DEFAULT_OPERATIONS, orders, orders_bytes};
 pub use labs::pick::{
-    PickError, PickSettings, Predicted, Prediction, ProgramSettings, RecordError, RecordedProgram,
-    pick, pick_for_programs, predict, record_program,
+    PickError, PickSettings, Predicted, Prediction, TraceWorkloadError, pick, predict,
+    workload_of_trace,
 };
 pub use labs::study::{Settings, StudyError, study};
 pub use labs::why::{Timing, WhySettings, why};
-pub use launches::{LAUNCH_VARIABLE, pool_launches};
+pub use launches::pool_launches;
 pub use runner::{BackendRun, BackendRunner};
-pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict};
+pub use sixfold_measure::engine::measure::Progress;
+pub use sixfold_measure::engine::run::start_run;
+pub use sixfold_measure::launches::LAUNCH_VARIABLE;
+pub use sixfold_measure::pages::{self, HeapGuard, HeapPolicyConflict};
+pub use sixfold_measure::{
+    CacheFlusher, Clock, EditPass, ElementKind, MachineClock, MemorySpeed, Operation, Series,
+    Start, caches, timed,
+};
+pub use sixfold_measure::{
+    Effort, ProgramSettings, StudyMesh, free_memory, pick_for_programs, sha256_of,
+};
+pub use sixfold_measure::{Outcome, Trace, TraceError};
+pub use sixfold_workload::Recording;
 pub use sixfold_workload::{
     Access, Action, Amount, EditPlaceError, Part, Workload, WorkloadError, built_in, built_ins,
+    suite_of_trace,
 };
 pub use sixfold_workload::{
-    Allocated, AllocationCounter, Backend, CacheFlusher, Clock, EditPass, Editor, Edits,
-    ElementKind, Heap, MAX_SCANNED_FACES, MachineClock, MeasuredMemory, MemorySpeed, NotCounted,
-    Operation, Refiner, Series, SingleEdit, Start, SubdivisionJob, Way, caches, timed,
-};
-pub use sixfold_workload::{
-    Asked, EditProgram, MovingProgram, Outcome, Program, ProgramRefusal, Recorded, Recording,
-    RefineProgram, Suite, SuiteProgram, Trace, TraceError, WalkProgram,
+    Allocated, AllocationCounter, Backend, Editor, Edits, Heap, MAX_SCANNED_FACES, MeasuredMemory,
+    NotCounted, Refiner, SingleEdit, SubdivisionJob, Way,
 };

@@ -9,13 +9,10 @@ use crate::engine::measure::{MAX_RUNS, untimed_runs};
 use crate::engine::plan::SHORTEST_SAMPLE_NS;
 use crate::labs::study::{StudyError, prepare};
 use crate::refusal::BuildInput;
+use sixfold_measure::pages::{self, HeapGuard};
+use sixfold_measure::{Clock, Operation, Series, Task, TimedBackend, exceeds_second_level};
 use sixfold_results::{Policy, Time};
-use sixfold_workload::Backend;
-use sixfold_workload::Clock;
-use sixfold_workload::Draw;
-use sixfold_workload::Operation;
-use sixfold_workload::pages::{self, HeapGuard};
-use sixfold_workload::{Series, Task, TimedBackend, exceeds_second_level};
+use sixfold_workload::{Backend, Draw};
 
 /// A built backend that can be timed alone, with the same code as in a study.
 ///

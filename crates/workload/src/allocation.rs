@@ -5,10 +5,9 @@ use sixfold::subdivision::Method;
 use sixfold_core::Counts;
 
 use crate::backend::Backend;
-use crate::clock::Clock;
-use crate::operation::Operation;
 use crate::operation::edit_pass::counts_after;
-use crate::series::Series;
+use crate::subdivision_job::SubdivisionJob;
+use sixfold_measure::{Clock, Operation, Series};
 use sixfold_results::Time;
 
 /// A counter of all bytes that a program requests from its allocator. The program that installs the
@@ -103,7 +102,7 @@ impl Backend {
         if operation != Operation::Build && visits(polygons) > limit {
             return Err(NotCounted::Crowded);
         }
-        let method = operation.subdivision_job().map(|job| job.way.method());
+        let method = SubdivisionJob::of(operation).map(|job| job.way.method());
         let is_native = method == Some(Method::Native);
         let scans = operation.scans(&self.info.costs).contains(&true);
         let is_large = polygons.face_count() > MAX_SCANNED_FACES
@@ -140,10 +139,7 @@ impl Backend {
         }
         let counts = match operation {
             Operation::EditPass(pass) => counts_after(pass, self, polygons, counts),
-            _ => match operation
-                .subdivision_job()
-                .map(|job| job.subdivision.split(0))
-            {
+            _ => match SubdivisionJob::of(operation).map(|job| job.subdivision.split(0)) {
                 Some(Some(split)) => split.refined_counts(counts, 0),
                 _ => *counts,
             },

@@ -12,15 +12,15 @@ use sixfold_core::{Counts, Measured};
 
 use crate::draw::Draw;
 use crate::heap::{Heap, MeasuredMemory, measure_memory};
-use crate::job::TimedBackend;
 use crate::mix::{
     MixBackend, MixInput, PreparedMix, Route, Schedule, prepare_edit_mix, prepare_query_mix,
     tabulate_structure,
 };
-use crate::operation::edit_pass::{EditPass, PreparedEditor, decimated_counts, prepare_pass};
+use crate::operation::edit_pass::{PreparedEditor, decimated_counts, prepare_pass};
 use crate::reads::{ReadsObserver, count};
 use crate::single_edit::{SingleEdit, prepare_single};
 use crate::timed_structure::TimedStructure;
+use sixfold_measure::{EditPass, TimedBackend};
 
 /// A mesh data structure with functions that build, run and measure the structure.
 ///
@@ -29,13 +29,14 @@ use crate::timed_structure::TimedStructure;
 ///
 /// ```
 /// use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, shapes};
-/// use sixfold_workload::{Backend, EditPass};
+/// use sixfold_measure::EditPass;
+/// use sixfold_workload::Backend;
 ///
 /// // In place of the half-edge mesh: types that another crate defines.
 /// let backend = Backend::new::<HalfEdgeMesh>()
 ///     .with_edits::<EditableHalfEdgeMesh>()
 ///     .with_refinement::<HalfEdgeMesh>();
-/// let editor = EditPass::FlipAll.prepare(&backend, &shapes::icosahedron());
+/// let editor = backend.prepare_pass(EditPass::FlipAll, &shapes::icosahedron());
 /// assert!(editor.is_some_and(|editor| editor.is_ok()));
 /// ```
 #[derive(Clone, Copy)]
@@ -189,6 +190,15 @@ impl Backend {
         draw: Option<&'a Draw>,
     ) -> Result<Prepared<'a>, BuildError> {
         (self.queries.build)(self, polygons, draw)
+    }
+
+    /// Prepares a pass of edits. Returns `None` if the structure has no edits.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason if the structure cannot hold `polygons` or if a face is not a triangle.
+    pub fn prepare_pass(&self, pass: EditPass, polygons: &PolygonMesh) -> Option<PreparedEditor> {
+        Some((self.edits?.prepare_pass)(pass, &self.algorithms, polygons))
     }
 
     /// Builds the structure from `polygons` and measures the allocated bytes with the counters of

@@ -16,7 +16,7 @@ mod schedule;
 mod structure_mix;
 mod table_mix;
 
-use crate::job::TimedBackend;
+use sixfold_measure::TimedBackend;
 
 pub use places::EditPlaceError;
 pub use route::Route;
@@ -26,11 +26,11 @@ pub use structure_mix::{MixRefusal, PreparedMix, prepare_mix};
 pub use table_mix::tabulate;
 pub(crate) use table_mix::tabulate_structure;
 
-/// Why a backend of a mix refuses [`Task::Program`](crate::Task::Program).
+/// Why a backend of a mix refuses [`Task::Program`](sixfold_measure::Task::Program).
 const NO_PROGRAM: &str = "the backend was prepared for a workload, not for a program";
 
 /// A backend on which a mix can be run: a structure, or relation tables. A `MixBackend` also runs
-/// the tasks [`Mix`](crate::Task::Mix) and [`Part`](crate::Task::Part) of its schedule. All tasks
+/// the tasks [`Mix`](sixfold_measure::Task::Mix) and [`Part`](sixfold_measure::Task::Part) of its schedule. All tasks
 /// of a `MixBackend` run on the same mesh.
 pub trait MixBackend: TimedBackend {
     /// Returns the paths of the Rust types that a program must import to use this backend.

@@ -4,10 +4,9 @@ use std::hint::black_box;
 
 use sixfold::MeshQuery;
 
-use crate::job::{Outcome, TimedRun};
-use crate::operation::{ElementKind, Operation};
-use crate::series::Series;
+use crate::operation::{checksum, sweep};
 use crate::sweeps::{All, Outputs, SweepResult};
+use sixfold_measure::{ElementKind, Operation, Outcome, Series, TimedRun};
 
 /// Runs `operation` over all of `mesh` as `series` describes. Returns the time of all runs.
 pub(crate) fn run_whole<M: MeshQuery>(
@@ -19,7 +18,7 @@ pub(crate) fn run_whole<M: MeshQuery>(
     let mut results = [SweepResult::default(); 3];
     let time = series.time_together(|| {
         for kind in operation.kinds() {
-            let result = operation.sweep(kind, black_box(mesh), &All, outputs);
+            let result = sweep(operation, kind, black_box(mesh), &All, outputs);
             results[kind.index()] = black_box(result);
         }
         black_box(&mut *outputs);
@@ -40,7 +39,7 @@ pub(crate) fn outcome(
     values: &dyn Fn(ElementKind) -> f64,
 ) -> Outcome {
     Outcome {
-        checksum: operation.checksum(SweepResult::sum_of(results), values),
+        checksum: checksum(operation, SweepResult::sum_of(results), values),
         elements: elements_of_all(operation, results, scale),
         refused: 0,
     }
@@ -50,7 +49,7 @@ pub(crate) fn outcome(
 /// the unit of the operation.
 fn elements_of_all(operation: Operation, results: [SweepResult; 3], scale: [f64; 3]) -> u64 {
     let scaled = |kind: ElementKind, number: u64| number as f64 * scale[kind.index()];
-    let visited = match operation.description().unit.element() {
+    let visited = match operation.unit_element() {
         Some(kind) => scaled(kind, results[kind.index()].elements),
         None => {
             let kinds = ElementKind::ALL.into_iter();

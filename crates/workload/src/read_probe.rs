@@ -24,9 +24,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use sixfold::{MemoryFootprint, TableBytes};
 use sixfold_core::Probe;
+use sixfold_measure::LINE_BYTES;
 
-/// Bytes of one cache line.
-pub const LINE_BYTES: usize = 64;
 /// Number of lines in the simulated cache. The simulated cache has 256 KiB. Most processors have at
 /// least 256 KiB of cache per core.
 pub const CACHE_LINES: u64 = 4096;

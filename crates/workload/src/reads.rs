@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use sixfold::{MeshQuery, QueryCost, Relation};
 use sixfold_core::Measured;
 
-use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
+use crate::read_probe::{CountingProbe, ReadCounts, Step};
+use sixfold_measure::LINE_BYTES;
 use sixfold_results::{Reads, TableReads};
 
 /// Number of elements in a sample. The elements of a sample are evenly spaced.

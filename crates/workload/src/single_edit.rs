@@ -6,7 +6,7 @@ use sixfold_core::EditOf;
 use crate::backend::Backend;
 use crate::edit_place::{independent_faces, prepare_edit};
 use crate::operation::edit_pass::{Editor, Edits, PreparedEditor};
-use crate::series::{ReusedCopies, Series};
+use sixfold_measure::{ReusedCopies, Series};
 use sixfold_results::Time;
 
 /// An edit that is done at several faces of a closed triangle mesh.

@@ -5,7 +5,7 @@ use sixfold::subdivision::{Method, Scheme, Step, Subdivision, SubdivisionError};
 use sixfold::{Creases, PolygonMesh};
 
 use crate::backend::Backend;
-use crate::sweeps::field_sum;
+use sixfold_measure::{Operation, field_sum};
 
 sixfold_core::named! {
     /// A way to compute and store the levels of a subdivision.
@@ -68,6 +68,17 @@ impl SubdivisionJob {
             way,
             levels,
         }
+    }
+
+    /// Returns the subdivision that `operation` runs: one level; `None` if the operation is not a subdivision.
+    pub fn of(operation: Operation) -> Option<Self> {
+        let (scheme, method) = operation.subdivision()?;
+        let way = match method {
+            Method::Gather => Way::Gather,
+            Method::Scatter => Way::Scatter,
+            Method::Native => Way::Native,
+        };
+        Some(Self::new(scheme, way, 1))
     }
 
     /// Prepares the subdivision for the structure of `backend`. Returns `None` if the structure

@@ -7,12 +7,14 @@ use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
 use crate::backend::Backend;
 use crate::draw::{Draw, Side};
-use crate::handle_lists::HandleLists;
-use crate::job::{ElementSample, Job, Task, TimedBackend, TimedRun};
-use crate::operation::{ElementKind, Operation, build, edit_pass, subdivision, vv_smooth};
+use crate::operation::{build, edit_pass, subdivision, sweep, vv_smooth};
 use crate::passes::{outcome, run_whole};
-use crate::series::{Series, Start, exceeds_second_level};
-use crate::sweeps::{All, Elements, Outputs, Sink, SweepResult};
+use crate::subdivision_job::SubdivisionJob;
+use crate::sweeps::{All, Elements, Outputs, SweepResult, finish};
+use sixfold_measure::{
+    ElementKind, ElementSample, HandleLists, Job, Operation, Series, Sink, Start, Task,
+    TimedBackend, TimedRun, exceeds_second_level,
+};
 use sixfold_results::Time;
 
 /// A structure built from `polygons`, with storage for outputs and with handles of the drawn
@@ -67,8 +69,14 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         };
         for kind in operation.kinds() {
             if sample.scanned[kind.index()] {
-                self.drawn
-                    .extend_to(kind, &self.mesh, self.polygons, draw, sample.size);
+                extend_to(
+                    &mut self.drawn,
+                    kind,
+                    &self.mesh,
+                    self.polygons,
+                    draw,
+                    sample.size,
+                );
             }
         }
         let (size, scale) = sizes_and_scales(draw, sample);
@@ -84,8 +92,8 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
                 let mesh = black_box(&self.mesh);
                 let outputs = &mut self.outputs;
                 results[k] = black_box(match sample.scanned[k] {
-                    true => operation.sweep(kind, mesh, &sampled, outputs),
-                    false => operation.sweep(kind, mesh, &All, outputs),
+                    true => sweep(operation, kind, mesh, &sampled, outputs),
+                    false => sweep(operation, kind, mesh, &All, outputs),
                 });
                 black_box(outputs);
             });
@@ -134,7 +142,7 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
         let Task::Operation(operation) = job.task else {
             return TimedRun::refused("the backend has no prepared workload".into(), series);
         };
-        let run = match (operation, job.sample, operation.subdivision_job()) {
+        let run = match (operation, job.sample, SubdivisionJob::of(operation)) {
             (Operation::EditPass(pass), sample, _) => {
                 edit_pass::run(&self.backend, pass, self.polygons, sample, series)
             }
@@ -224,34 +232,34 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
     }
 }
 
-impl<M: Representation> HandleLists<M> {
-    /// Looks up handles of drawn elements of one kind until there are `size` of them.
-    fn extend_to(
-        &mut self,
-        kind: ElementKind,
-        mesh: &M,
-        polygons: &PolygonMesh,
-        draw: &Draw,
-        size: usize,
-    ) {
-        fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
-            &drawn[known..drawn.len().min(size).max(known)]
+/// Looks up handles of drawn elements of one kind until there are `size` of them.
+fn extend_to<M: Representation>(
+    handles: &mut HandleLists<M>,
+    kind: ElementKind,
+    mesh: &M,
+    polygons: &PolygonMesh,
+    draw: &Draw,
+    size: usize,
+) {
+    fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
+        &drawn[known..drawn.len().min(size).max(known)]
+    }
+    match kind {
+        ElementKind::Vertex => {
+            let vertices = missing(&draw.vertices, handles.vertices.len(), size).iter();
+            handles
+                .vertices
+                .extend(vertices.map(|&v| M::vertex_handle(polygons, v)));
         }
-        match kind {
-            ElementKind::Vertex => {
-                let vertices = missing(&draw.vertices, self.vertices.len(), size).iter();
-                self.vertices
-                    .extend(vertices.map(|&v| M::vertex_handle(polygons, v)));
-            }
-            ElementKind::Edge => {
-                let sides = missing(&draw.edges, self.edges.len(), size);
-                self.edges.extend(edge_handles(mesh, polygons, sides));
-            }
-            ElementKind::Face => {
-                let faces = missing(&draw.faces, self.faces.len(), size).iter();
-                self.faces
-                    .extend(faces.map(|&f| M::face_handle(polygons, f)));
-            }
+        ElementKind::Edge => {
+            let sides = missing(&draw.edges, handles.edges.len(), size);
+            handles.edges.extend(edge_handles(mesh, polygons, sides));
+        }
+        ElementKind::Face => {
+            let faces = missing(&draw.faces, handles.faces.len(), size).iter();
+            handles
+                .faces
+                .extend(faces.map(|&f| M::face_handle(polygons, f)));
         }
     }
 }
@@ -302,7 +310,7 @@ impl<M: MeshQuery> Elements<M> for SampledElements<'_, M> {
     fn query(&self, mesh: &M, relation: Relation) -> SweepResult {
         let size = self.size[ElementKind::queried_by(relation).index()];
         let sink = self.drawn.query(mesh, relation, 0..size, Sink::default());
-        sink.finish(size as u64)
+        finish(sink, size as u64)
     }
 }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use sixfold::{Edit, Relation};
 use sixfold_core::Counts;
 
-use crate::operation::{ElementKind, Operation};
+use sixfold_measure::{ElementKind, Operation};
 use sixfold_results::{OwnData, WorkloadPart, WorkloadReport};
 
 /// The operations that a program performs on a mesh.

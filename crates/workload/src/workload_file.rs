@@ -7,8 +7,8 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use sixfold::UnknownName;
 use toml::Spanned;
 
-use crate::operation::ElementKind;
 use crate::workload::{Access, Action, Amount, NumberOrText, Part, Workload};
+use sixfold_measure::ElementKind;
 use sixfold_results::OwnData;
 
 /// An error in a workload file, with the number of the line.
@@ -259,7 +259,7 @@ mod tests {
                     Amount::Per(2.0, ElementKind::Edge),
                 ),
                 part(
-                    Action::Pass(crate::Operation::Boundary),
+                    Action::Pass(sixfold_measure::Operation::Boundary),
                     Amount::Number(0.5),
                 ),
             ],

@@ -5,7 +5,7 @@ use sixfold_results::Policy;
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use sixfold_workload::pages::{self, HeapGuard};
+use sixfold_measure::pages::{self, HeapGuard};
 
 fn alone() -> MutexGuard<'static, ()> {
     static TESTS: Mutex<()> = Mutex::new(());

@@ -38,14 +38,17 @@ impl ReadFiles {
     }
 }
 
-/// Parses `--scene`.
-fn scene(text: &str) -> Result<Scene, String> {
-    match (text, text.parse()) {
-        ("all", _) => Ok(Scene::All),
-        (_, Ok(number)) => Ok(Scene::Number(number)),
-        _ => Err("expected the number of a scene, from 0, or all".to_owned()),
+impl From<ReadFiles> for sixfold_measure::command::mesh_files::ReadFiles {
+    fn from(given: ReadFiles) -> Self {
+        Self {
+            as_stored: given.as_stored,
+            recentre: given.recentre,
+            scene: given.scene,
+        }
     }
 }
+
+use sixfold_measure::command::arguments::scene;
 
 // How meshes are read by commands that can cut polygons first.
 #[derive(Clone, Copy, Debug, Default, Args)]

@@ -1,6 +1,7 @@
 //! Arguments of `sixfold pick`, `workloads` and `operations`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 use sixfold_results::{Need, Policy};
@@ -33,6 +34,7 @@ const WORKLOADS_EXAMPLES: &str = "Examples:
   sixfold workloads
   sixfold workloads --show smoothing > mine.toml     a file to edit
   sixfold workloads --operations                     operations that a workload may contain
+  sixfold workloads --trace mine.trace mesh.obj > mine.toml     a recorded program as a workload
 
 Exit codes: 0 success; 2 wrong usage.";
 
@@ -97,9 +99,23 @@ pub(crate) struct Workloads {
     /// List the operations that a workload may contain
     #[arg(long, conflicts_with = "json")]
     pub(crate) operations: bool,
+    /// Print the calls of this trace as a workload file; MESH is the mesh on which it was recorded
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["show", "operations", "json"])]
+    pub(crate) trace: Option<PathBuf>,
+    /// The mesh of --trace; without it, the built-in mesh of 20,000 triangles
+    #[arg(value_name = "MESH", requires = "trace")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// With --trace: first cut every polygon into triangles
+    #[arg(long, requires = "trace")]
+    pub(crate) triangulate: bool,
+    /// With --trace: time to measure the program's own work, such as 5s
+    #[arg(long, value_name = "TIME", default_value = "5s", value_parser = super::duration, requires = "trace")]
+    pub(crate) budget: Duration,
     /// Write the workloads as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 /// List the operations of a study, and what each operation does.
@@ -111,30 +127,7 @@ pub(crate) struct Operations {
     pub(crate) json: Option<PathBuf>,
 }
 
-/// Parses `2GiB`, `500MB` or `1000000`: at least 1 byte.
-pub(super) fn bytes(text: &str) -> Result<u64, String> {
-    let units = [
-        ("GiB", 1 << 30),
-        ("MiB", 1 << 20),
-        ("KiB", 1 << 10),
-        ("GB", 1_000_000_000),
-        ("MB", 1_000_000),
-        ("kB", 1000),
-        ("B", 1),
-        ("", 1_u64),
-    ];
-    let wrong = || format!("write memory as 2GiB, 500MB or 1000000, not `{text}`");
-    let (number, unit) = units
-        .into_iter()
-        .find_map(|(unit, bytes)| Some((text.trim().strip_suffix(unit)?, bytes)))
-        .ok_or_else(wrong)?;
-    let number: f64 = number.trim().parse().map_err(|_| wrong())?;
-    let bytes = number * unit as f64;
-    match bytes >= 1.0 && bytes <= u64::MAX as f64 {
-        true => Ok(bytes as u64),
-        false => Err(wrong()),
-    }
-}
+pub(super) use sixfold_measure::command::arguments::bytes;
 
 #[cfg(test)]
 mod tests {

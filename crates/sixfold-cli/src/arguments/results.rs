@@ -39,14 +39,7 @@ fn baseline_name(text: &str) -> Result<String, String> {
     }
 }
 
-/// Parses a tag such as `machine=laptop`.
-fn tag(text: &str) -> Result<(String, String), String> {
-    let pair = text
-        .split_once('=')
-        .filter(|(key, _)| !key.trim().is_empty());
-    let (key, value) = pair.ok_or("write KEY=VALUE, such as machine=laptop")?;
-    Ok((key.trim().to_owned(), value.trim().to_owned()))
-}
+use sixfold_measure::command::arguments::tag;
 
 impl ResultFiles {
     /// Returns the options with their paths.

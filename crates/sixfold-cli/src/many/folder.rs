@@ -19,7 +19,7 @@ use sixfold_report::ReportPage;
 use sixfold_results::{Finding, Results, RunSettings};
 use sixfold_study::{Settings, sha256_of};
 
-use super::meshes::Mesh;
+use super::Mesh;
 use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::listed_folder::remove;

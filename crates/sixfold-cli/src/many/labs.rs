@@ -163,8 +163,9 @@ impl LabRunner<'_> {
         let launching = Launching {
             wanted: self.launches,
             paths: self.path.into_iter().collect(),
-            part: Some(Part::Lab(lab)),
+            part: Some(Part::Lab(lab.name().to_owned())),
             stop: self.stop,
+            pool: sixfold_study::pool_launches,
         };
         let effort = launches::effort(*effort);
         Ok(match lab {

@@ -8,10 +8,10 @@ use std::process::ExitCode;
 
 use sixfold::operators::face_normals;
 use sixfold::prelude::*;
-use sixfold_study::{Outcome, Program};
+use sixfold_measure::{Outcome, Program};
 
 fn main() -> ExitCode {
-    sixfold_cli::main(SharpEdges)
+    sixfold_measure::main(SharpEdges)
 }
 
 /// Counts the edges at which the surface bends by more than 30 degrees, and adds up their lengths.

@@ -29,20 +29,19 @@ use crate::engine::effort::Effort;
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
-use crate::inspect::StudyMesh;
-use crate::labs::study::{StudyError, is_skewed, prepare, scans};
-use crate::launches::{pool_runs, pool_timers};
+use crate::labs::study::{StudyError, prepare, scans};
 use crate::refusal::BuildInput;
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
 use settings::Plan;
+use sixfold_measure::launches::{pool_runs, pool_timers};
+use sixfold_measure::{MachineClock, Operation, StudyMesh, TimedBackend, caches, is_skewed};
 use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::{
     BackendBytes, BackendRefusal, Cache, CacheLimit, Fit, GrowthReport, MeshReport, ResultRow,
     Samples, SizeReport, last_level_bytes,
 };
-use sixfold_workload::caches;
-use sixfold_workload::{Backend, Draw, MachineClock, Operation, TimedBackend};
+use sixfold_workload::{Backend, Draw};
 
 /// Measures a shape in several sizes, within the time budget of `settings`. A size is left out if
 /// the structures of this size cannot be built in the remaining time.

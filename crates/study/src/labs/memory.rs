@@ -9,12 +9,13 @@ mod sentences;
 
 use sixfold::{BuildError, PolygonMesh};
 use sixfold_core::Counts;
+use sixfold_measure::{Operation, StudyMesh};
 use sixfold_workload::{
-    AllocationCounter, Backend, Heap, MAX_SCANNED_FACES, MeasuredMemory, NotCounted, Operation,
+    AllocationCounter, Backend, Heap, MAX_SCANNED_FACES, MeasuredMemory, NotCounted,
 };
 
 use crate::engine::run::start_run;
-use crate::inspect::{StudyMesh, per_vertex, unbuilt};
+use crate::inspect::{per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::BuildInput;
 use sixfold_results::{Audit, BackendAudit, BackendReport, OperationBytes, RunSettings};

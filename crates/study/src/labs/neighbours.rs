@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
+use sixfold_measure::{ElementSample, MachineClock, StudyMesh, Task, TimedBackend};
 use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::ranking::NO_DIFFERENCE;
 use sixfold_results::{
@@ -19,17 +20,15 @@ use sixfold_results::{
     RunSettings, SpatialTask, noise,
 };
 use sixfold_workload::spatial::{IndexKind, Input, KINDS, LIST};
-use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
 
 use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::warnings::machine_warnings;
-use crate::inspect::StudyMesh;
 use crate::labs::study::StudyError;
-use crate::launches::{pool_runs, pool_timers};
 use cheapest::{Cost, cheapest};
+use sixfold_measure::launches::{pool_runs, pool_timers};
 
 /// Maximum number of elements that the list visits in one run.
 const LIST_VISITS: usize = 4_000_000;

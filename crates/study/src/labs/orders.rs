@@ -21,16 +21,16 @@ use crate::engine::effort::Budget;
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::engine::warnings::warnings;
-use crate::inspect::StudyMesh;
-use crate::launches::{pool_runs, pool_timers};
+use sixfold_measure::launches::{pool_runs, pool_timers};
+use sixfold_measure::{MachineClock, Operation, StudyMesh, TimedBackend, is_skewed};
 
-use crate::labs::study::{Settings, StudyError, is_skewed, prepare, scans};
+use crate::labs::study::{Settings, StudyError, prepare, scans};
 use crate::refusal::BuildInput;
 use effects::{OrderTime, Values, comparison};
 use meshes::OrderedMeshes;
 use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::{Comparison, OrdersReport, Refusal, ResultRow, Samples, noise};
-use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
+use sixfold_workload::Backend;
 
 /// Names of the operations that [`orders`] measures if the settings name no operations.
 pub const DEFAULT_OPERATIONS: [&str; 6] = [

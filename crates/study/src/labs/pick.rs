@@ -8,15 +8,8 @@
 //! mix queries.
 
 mod backend;
-mod break_even;
-mod choice;
-mod launches;
-mod measurement;
 mod needs;
-mod pooled;
 mod prediction;
-mod programs;
-mod reasons;
 mod recording;
 mod tasks;
 #[cfg(test)]
@@ -24,27 +17,25 @@ mod tests;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use sixfold_measure::{MachineClock, Operation, StudyMesh};
 use sixfold_results::{Confidence, Excluded, Need, PickReport, Policy, RunSettings};
 use sixfold_workload::{
-    Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
-    prepare_mix, tabulate,
+    Backend, Draw, EditPlaceError, MixRefusal, Route, Schedule, Workload, prepare_mix, tabulate,
 };
 
-pub(crate) use launches::pool_picks;
 pub use prediction::{Predicted, Prediction, predict};
-pub(crate) use programs::Qualification;
-pub use programs::{ProgramSettings, pick_for_programs};
-pub use recording::{RecordError, RecordedProgram, record_program};
+pub use recording::{TraceWorkloadError, workload_of_trace};
 
 use crate::engine::bench::Bench;
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
-use crate::inspect::StudyMesh;
 use crate::labs::study::{Settings, StudyError, needed_bytes};
 use crate::refusal::BuildInput;
 use backend::{PickBackend, build_tables};
-use measurement::{Contestant, PickMeasurement};
-use pooled::Question;
+use sixfold_measure::pick::{
+    MeasuredBackend as Contestant, MeshOutcome, PickMeasurement, Question, over_memory_limit,
+    pooled,
+};
 use tasks::Tasks;
 
 /// The settings of [`pick`].
@@ -108,11 +99,6 @@ pub enum PickError {
     /// The list of meshes is empty.
     #[error("the list of meshes is empty: give at least one mesh")]
     NoMesh,
-    /// The mesh for child processes cannot be written.
-    #[error(
-        "the mesh for child processes cannot be written: {reason}: set TMPDIR to a folder with space"
-    )]
-    MeshFile { reason: String },
 }
 
 /// Runs the workload of `settings` on each of `study_meshes`, and ranks the backends.
@@ -181,7 +167,7 @@ pub(crate) fn pick_on(
         )?);
     }
     let interrupted = stop.load(Ordering::Relaxed);
-    Ok(pooled::pooled(
+    Ok(pooled(
         outcomes,
         Question {
             workload: settings.workload.report(),
@@ -221,7 +207,7 @@ fn qualified(
             .iter()
             .find_map(|need| needs::unmet_reason(*need, &backend));
         let bytes = (backend.layout_bytes)(&input.counts) as u64;
-        let large = || needs::over_memory_limit(bytes, settings.max_memory);
+        let large = || over_memory_limit(bytes, settings.max_memory);
         let refused = || {
             let refusal = backend.info.check(polygons).err()?;
             Some(input.reason(&refusal, &backend.info.capabilities))
@@ -241,7 +227,7 @@ fn measure_mesh(
     bench: &mut Bench<'_>,
     budget: Budget<'_>,
     progress: &mut dyn FnMut(f64, &str),
-) -> Result<measurement::MeshOutcome, PickError> {
+) -> Result<MeshOutcome, PickError> {
     let machine = bench.machine;
     let (qualifying, mut excluded) = qualified(study_mesh, settings)?;
     let polygons = &study_mesh.polygons;
@@ -271,7 +257,7 @@ fn measure_mesh(
     }
     let most = settings.max_memory;
     let too_large = |name: &str, bytes: usize| {
-        let reason = needs::over_memory_limit(bytes as u64, most)?;
+        let reason = over_memory_limit(bytes as u64, most)?;
         Some(Excluded::new(name, reason))
     };
     backends.retain(|PickBackend { mixer, .. }| {
@@ -289,6 +275,8 @@ fn measure_mesh(
     let has_control = again.is_some();
     backends.extend(again);
     backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
+    let structures = backends.iter().filter_map(|b| b.structure);
+    let structures: Vec<Backend> = structures.collect();
     let hosted = backends.into_iter().map(|b| b.hosted(machine, &counts));
     let mut backends: Vec<Contestant<'_>> = hosted.collect();
     let control = backends.pop_if(|_| has_control);
@@ -298,8 +286,10 @@ fn measure_mesh(
     } else {
         progress(0.1, "tabulating");
         let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
+        let candidates = backends.iter().map(|(candidate, _)| candidate);
+        let structures: Vec<_> = candidates.zip(structures).collect();
         let tables = build_tables(
-            &backends,
+            &structures,
             polygons,
             counts,
             settings.seed,

@@ -6,15 +6,16 @@ pub(crate) mod sentences;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use sixfold::{Distribution, Facts, QueryCost, Relation, UnknownName};
+use sixfold::{QueryCost, Relation, UnknownName};
 use sixfold_core::Counts;
+use sixfold_measure::{MachineClock, Operation, StudyMesh, TimedBackend, is_skewed};
 
 use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
-use crate::inspect::{StudyMesh, per_vertex, unbuilt};
+use crate::inspect::{per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
 use sixfold_results::{
     BackendRefusal, BackendReport, CacheState, Confidence, Policy, Report, ResultRow, RunSettings,
@@ -23,15 +24,8 @@ use sixfold_results::{
 
 use crate::engine::warnings::warnings;
 use crate::refusal::BuildInput;
-use sixfold_workload::Backend;
-use sixfold_workload::Draw;
-use sixfold_workload::MachineClock;
-use sixfold_workload::Operation;
-use sixfold_workload::TimedBackend;
-use sixfold_workload::pages::HeapPolicyConflict;
-
-/// Maximum valence or degree of a mesh that counts as not skewed.
-const MAX_NEIGHBOURS: usize = 1000;
+use sixfold_measure::pages::HeapPolicyConflict;
+use sixfold_workload::{Backend, Draw};
 
 /// The settings of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -361,11 +355,6 @@ pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], count
     let (all, most) = bytes.fold((0, 0_u64), |(all, most), one| (all + one, most.max(one)));
     let makes = operations.iter().any(|operation| operation.creates_mesh());
     all + most * if makes { 10 } else { 3 }
-}
-
-pub(crate) fn is_skewed(facts: &Facts) -> bool {
-    let most = |spread: &Option<Distribution>| spread.as_ref().map_or(0, |s| s.max);
-    most(&facts.valence).max(most(&facts.face_degree)) > MAX_NEIGHBOURS
 }
 
 pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {

@@ -11,28 +11,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use sixfold::Relation;
+use sixfold_measure::{ElementKind, LINE_BYTES, MachineClock, MemorySpeed, Operation, StudyMesh};
 use sixfold_results::launches::{LaunchRows, pool_rows};
 use sixfold_results::statistics::median;
 use sixfold_results::{
     Agreement, BackendReport, Bound, BufferSpeed, Confidence, Model, Reads, ResultRow, Samples,
     Timed, Why, WhyRow,
 };
-use sixfold_workload::{
-    Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MachineClock, MemorySpeed,
-    ReadsObserver,
-};
-use sixfold_workload::{Operation, REACH, SCAN_SAMPLE};
+use sixfold_workload::{Backend, CACHE_LINES, MAX_READS, REACH, ReadsObserver, SCAN_SAMPLE};
 
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::engine::run::start_run;
 use crate::engine::warnings::warnings;
-use crate::inspect::{StudyMesh, unbuilt};
+use crate::inspect::unbuilt;
 use crate::labs::study::sentences::fault;
 use crate::labs::study::{Settings, StudyError, study_on};
-use crate::launches::{pool_runs, pool_timers};
 use crate::refusal::BuildInput;
+use sixfold_measure::launches::{pool_runs, pool_timers};
 use sixfold_results::numbers::bytes;
 
 /// The stage before the times are measured.

@@ -2,10 +2,10 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 
+use sixfold_measure::Operation;
 use sixfold_results::{
     Confidence, Failed, FailureKind, Finding, Policy, Report, Results, Samples, Standing,
 };
-use sixfold_workload::Operation;
 
 use crate::engine::effort::Effort;
 use crate::engine::simulated_machine::SimulatedMachine;

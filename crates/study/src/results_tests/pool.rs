@@ -1,6 +1,6 @@
 use std::sync::atomic::AtomicBool;
 
-use sixfold_workload::Operation;
+use sixfold_measure::Operation;
 
 use sixfold::subdivision::Method;
 use sixfold::{PolygonMesh, shapes};

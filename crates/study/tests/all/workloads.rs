@@ -6,7 +6,7 @@ use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Scheme;
 use sixfold::{EditableHalfEdgeMesh, Point, PolygonMesh, Relation, Representation, shapes};
 use sixfold_conformance::edit::{Action, Model, Rules};
-use sixfold_study::{Backend, BackendRunner, EditPass, MachineClock, Operation};
+use sixfold_study::{Backend, BackendRunner, EditPass, MachineClock, Operation, SubdivisionJob};
 
 struct Oracle<'a> {
     mesh: &'a PolygonMesh,
@@ -302,7 +302,7 @@ fn patchwork() -> PolygonMesh {
 
 /// Returns whether the operation can run on this backend and mesh.
 fn can_run(operation: Operation, backend: &Backend, mesh: &PolygonMesh) -> bool {
-    let Some(job) = operation.subdivision_job() else {
+    let Some(job) = SubdivisionJob::of(operation) else {
         return !operation.creates_mesh() || mesh.faces().uniform_degree() == Some(3);
     };
     let scheme = job.subdivision.scheme;

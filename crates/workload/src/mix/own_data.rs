@@ -7,7 +7,7 @@ use std::ops::Range;
 use sixfold::PolygonMesh;
 
 use crate::mix::route::Route;
-use crate::operation::ElementKind;
+use sixfold_measure::ElementKind;
 use sixfold_results::OwnData;
 
 /// Bytes in a word. The data are read and written word by word.

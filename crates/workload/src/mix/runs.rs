@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use crate::job::{Outcome, TimedRun};
 use crate::mix::schedule::Schedule;
-use crate::series::Series;
+use sixfold_measure::{Outcome, Series, TimedRun};
 
 /// The numbers of operations, of results, and of refused edits.
 pub(crate) type Counts = [u64; 3];

@@ -12,17 +12,18 @@ use sixfold_core::EditOf;
 use crate::backend::Backend;
 use crate::draw::Draw;
 use crate::edit_place::prepare_edit;
-use crate::handle_lists::HandleLists;
-use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::places::{EditPlaceError, EditPlaces};
 use crate::mix::route::Route;
+use crate::mix::route_handles::{from_route, run_action, vertices_of};
 use crate::mix::runs::{Counts, run_turns, time_part, time_turns};
 use crate::mix::schedule::Schedule;
 use crate::mix::{MixBackend, NO_PROGRAM};
-use crate::series::{ReusedCopies, Series};
 use crate::timed_structure::TimedStructure;
 use crate::workload::{Action, Part};
+use sixfold_measure::{
+    HandleLists, Job, Outcome, ReusedCopies, Series, Task, TimedBackend, TimedRun,
+};
 
 /// The largest number of turns on one copy of a mesh that is edited.
 const MAX_TURNS_PER_COPY: u64 = 16;
@@ -186,7 +187,7 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
         let operations = range.end - range.start;
         match self.schedule.parts[part].action {
             Action::SetPosition => {
-                for run in self.handles.vertices_of(range) {
+                for run in vertices_of(&self.handles, range) {
                     run.iter().for_each(|&v| {
                         let at = mesh.position(v);
                         W::set_position(mesh, v, at);
@@ -205,7 +206,11 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
                 let done = some.len() as u64 - refused;
                 [some.len() as u64, done, refused]
             }
-            action => [operations, self.handles.run_action(mesh, action, range), 0],
+            action => [
+                operations,
+                run_action(&self.handles, mesh, action, range),
+                0,
+            ],
         }
     }
 
@@ -280,7 +285,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         let faces = EditPlaces::new(input.schedule, input.polygons)?;
         let work = Work {
             schedule: input.schedule,
-            handles: HandleLists::from_route(input.route, &mesh, input.polygons, &faces.occupied),
+            handles: from_route(input.route, &mesh, input.polygons, &faces.occupied),
             own_memory: OwnMemory::new(
                 &input.schedule.own_data,
                 input.route,
@@ -353,7 +358,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
             let before = Series {
                 runs: series.untimed,
                 untimed: 0,
-                start: crate::series::Start::Warm,
+                start: sixfold_measure::Start::Warm,
                 check: false,
                 ..*series
             };

@@ -7,19 +7,19 @@ use sixfold::{MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation
 use sixfold_relation_table::{Numbering, RelationTables};
 
 use crate::backend::Backend;
-use crate::handle_lists::HandleLists;
-use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::mix::own_data::OwnMemory;
 use crate::mix::route::Route;
+use crate::mix::route_handles::{from_route, run_action, vertices_of};
 use crate::mix::runs::{Counts, time_part, time_turns};
 use crate::mix::schedule::Schedule;
 use crate::mix::{MixBackend, NO_PROGRAM};
-use crate::operation::Operation;
 use crate::passes::run_whole;
-use crate::series::Series;
 use crate::sweeps::Outputs;
-use crate::tables::{TABLE_TYPE, TABLES, time_building};
 use crate::workload::Action;
+use sixfold_measure::{
+    HandleLists, Job, Operation, Outcome, Series, TABLE_TYPE, TABLES, Task, TimedBackend, TimedRun,
+    time_building,
+};
 use sixfold_results::Time;
 
 /// Builds the structure of `backend` from `polygons`, and copies the relations that `schedule`
@@ -75,7 +75,7 @@ fn route_handles<M: Representation>(
     polygons: &PolygonMesh,
     route: &Route,
 ) -> HandleLists<RelationTables> {
-    let handles = HandleLists::from_route(route, mesh, polygons, &[]);
+    let handles = from_route(route, mesh, polygons, &[]);
     let numbers = Numbering::new(mesh);
     handles.map_handles(
         |v| numbers.vertex(v),
@@ -142,7 +142,7 @@ fn run_range(
     let operations = range.end - range.start;
     match action {
         Action::SetPosition => {
-            for run in handles.vertices_of(range) {
+            for run in vertices_of(handles, range) {
                 for &v in run {
                     let at = black_box(tables.position(v));
                     tables.set_position(v, at);
@@ -152,7 +152,7 @@ fn run_range(
         }
         action => [
             operations,
-            handles.run_action(black_box(tables), action, range),
+            run_action(handles, black_box(tables), action, range),
             0,
         ],
     }

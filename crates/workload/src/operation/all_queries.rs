@@ -1,17 +1,9 @@
 //! Queries all nine relations: three at every vertex, three at every edge, three at every face.
 
-use sixfold::{MeshQuery, Relation};
+use sixfold::MeshQuery;
 
-use super::{Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult, query_each};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "all_queries",
-    about: "all nine relations",
-    unit: Unit::Visit,
-    visits: &[(ElementKind::Vertex, &[Relation::VertexVertices, Relation::VertexEdges, Relation::VertexFaces]), (ElementKind::Edge, &[Relation::EdgeVertices, Relation::EdgeEdges, Relation::EdgeFaces]), (ElementKind::Face, &[Relation::FaceVertices, Relation::FaceEdges, Relation::FaceFaces])],
-    ..Description::QUERIES
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(

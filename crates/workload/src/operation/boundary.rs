@@ -1,17 +1,9 @@
 //! Counts the edges with one face.
 
-use sixfold::{MeshQuery, Relation};
+use sixfold::MeshQuery;
 
-use super::{Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "boundary",
-    about: "counts the edges with one face",
-    unit: Unit::Element(ElementKind::Edge),
-    visits: &[(ElementKind::Edge, &[Relation::EdgeFaces])],
-    ..Description::TRAVERSAL
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(

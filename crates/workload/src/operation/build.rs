@@ -3,22 +3,8 @@
 use std::hint::black_box;
 
 use sixfold::{PolygonMesh, Representation};
-use sixfold_results::OperationGroup;
 
-use super::{Description, ElementKind, Unit};
-use crate::job::{Outcome, TimedRun};
-use crate::series::{Series, time_making};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "build",
-    about: "builds the structure from a polygon mesh",
-    unit: Unit::Element(ElementKind::Face),
-    group: OperationGroup::Build,
-    takes_samples: false,
-    pauses_clock: true,
-    allocates: true,
-    ..Description::QUERIES
-};
+use sixfold_measure::{Outcome, Series, TimedRun, time_making};
 
 /// Builds the structure of `mesh` again.
 pub(crate) fn run<M: Representation>(

@@ -2,16 +2,8 @@
 
 use sixfold::{MeshQuery, Relation};
 
-use super::{Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "circulate",
-    about: "vertex_faces, then face_vertices",
-    unit: Unit::Visit,
-    visits: &[(ElementKind::Vertex, &[Relation::VertexFaces]), (ElementKind::Face, &[Relation::FaceVertices])],
-    ..Description::QUERIES
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
@@ -26,4 +18,3 @@ pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
     };
     elements.query(mesh, queried)
 }
-

@@ -1,18 +1,9 @@
 //! Sums the lengths of all edges.
 
-use sixfold::{MeshQuery, Relation};
+use sixfold::MeshQuery;
 
-use super::{Checksum, Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "edge_length",
-    about: "sums the lengths of all edges",
-    unit: Unit::Element(ElementKind::Edge),
-    visits: &[(ElementKind::Edge, &[Relation::EdgeVertices])],
-    checksum: Checksum::Lengths,
-    ..Description::TRAVERSAL
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(

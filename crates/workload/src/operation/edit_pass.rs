@@ -3,102 +3,19 @@
 use sixfold::algorithms::Algorithms;
 use sixfold::remeshing::{Decimation, Target};
 use sixfold::{
-    Counts, EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Relation, Representation,
+    Counts, EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation,
 };
-use sixfold_results::{OperationGroup, Time};
+use sixfold_results::Time;
 
-use super::subdivision::patch;
-use super::{Checksum, Description, ElementKind, Unit};
 use crate::backend::Backend;
-use crate::job::{ElementSample, Outcome, TimedRun};
-use crate::series::{ReusedCopies, Series};
+use sixfold_measure::{EditPass, ElementSample, Outcome, ReusedCopies, Series, TimedRun, patch};
 
-sixfold_core::named! {
-    /// A series of edits over a whole triangle mesh.
-    pub enum EditPass: "edit pass" {
-        /// Inserts a vertex into the centre of every face, then collapses each new vertex into a
-        /// neighbour. Removes the deleted elements from the tables. The resulting mesh has the
-        /// original faces.
-        SplitCollapse = "split_collapse",
-        /// Flips every edge whose flip is legal, then flips the same edges again on the changed
-        /// mesh. The edges are flipped in the order of their first occurrence in the faces.
-        FlipAll = "flip_all",
-        /// Repeatedly collapses the edge with the least quadric error, until half of the faces are
-        /// left.
-        DecimateHalf = "decimate_half",
-        /// Repeatedly collapses the edge with the least quadric error, until a tenth of the faces
-        /// is left.
-        DecimateTenth = "decimate_tenth",
-    }
-}
-
-/// The description of each pass, in the order of [`EditPass::ALL`].
-pub(super) const DESCRIPTIONS: [Description; 4] = [
-    Description {
-        grows_tables: true,
-        ..describe(
-            EditPass::SplitCollapse,
-            "adds a vertex to each face, then collapses it",
-        )
-    },
-    Description {
-        unit: Unit::Visit,
-        visits: &[(ElementKind::Edge, &[Relation::EdgeFaces])],
-        grows_tables: true,
-        ..describe(
-            EditPass::FlipAll,
-            "flips each edge that can be flipped, twice",
-        )
-    },
-    describe(
-        EditPass::DecimateHalf,
-        "collapses edges until half the faces are left",
-    ),
-    describe(
-        EditPass::DecimateTenth,
-        "collapses edges until a tenth is left",
-    ),
-];
-
-const fn describe(pass: EditPass, about: &'static str) -> Description {
-    Description {
-        name: pass.name(),
-        about,
-        unit: Unit::Element(ElementKind::Face),
-        group: OperationGroup::Edits,
-        // An edit queries at least these relations.
-        visits: &[(ElementKind::Vertex, &[Relation::VertexFaces])],
-        checksum: Checksum::Lengths,
-        takes_samples: false,
-        pauses_clock: true,
-        allocates: true,
-        depends_on_order: true,
-        ..Description::QUERIES
-    }
-}
-
-impl EditPass {
-    /// Returns the part of the faces that is left; `None` if the pass keeps the number of faces.
-    const fn ratio(self) -> Option<f64> {
-        match self {
-            Self::SplitCollapse | Self::FlipAll => None,
-            Self::DecimateHalf => Some(0.5),
-            Self::DecimateTenth => Some(0.1),
-        }
-    }
-
-    /// Prepares the pass for the structure of `backend`. Returns `None` if the structure has no
-    /// edits.
-    ///
-    /// # Errors
-    ///
-    /// Returns the reason if the structure cannot hold `polygons` or if a face is not a triangle.
-    pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
-        Some((backend.edits?.prepare_pass)(
-            self,
-            &backend.algorithms,
-            polygons,
-        ))
+/// Returns the part of the faces that is left; `None` if the pass keeps the number of faces.
+const fn ratio(pass: EditPass) -> Option<f64> {
+    match pass {
+        EditPass::SplitCollapse | EditPass::FlipAll => None,
+        EditPass::DecimateHalf => Some(0.5),
+        EditPass::DecimateTenth => Some(0.1),
     }
 }
 
@@ -211,7 +128,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for EditPassRun<M> {
                 copy.edges.clone_from(&tracked);
             },
             |copy| {
-                copy.edits = match (pass.ratio(), &mut copy.edges) {
+                copy.edits = match (ratio(*pass), &mut copy.edges) {
                     (_, Some(edges)) => flip_all(&mut copy.mesh, edges),
                     (Some(ratio), None) => decimate_to(&mut copy.mesh, algorithms, ratio),
                     (None, None) => split_collapse(&mut copy.mesh),
@@ -408,7 +325,7 @@ pub(crate) fn run(
 ) -> TimedRun {
     let piece = sample.map(|sample| patch(polygons, sample.size));
     let input = piece.as_ref().unwrap_or(polygons);
-    let editor: Option<PreparedEditor> = pass.prepare(backend, input);
+    let editor: Option<PreparedEditor> = backend.prepare_pass(pass, input);
     let mut editor = match editor.unwrap_or_else(|| Err("it cannot be edited".into())) {
         Ok(editor) => editor,
         Err(refusal) => return TimedRun::refused(refusal, series),
@@ -433,7 +350,7 @@ pub(crate) fn counts_after(
     polygons: &PolygonMesh,
     before: &Counts,
 ) -> Counts {
-    let Some(ratio) = pass.ratio() else {
+    let Some(ratio) = ratio(pass) else {
         return *before;
     };
     let edits = backend.edits;

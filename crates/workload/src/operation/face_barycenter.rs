@@ -1,19 +1,9 @@
 //! Stores for each face the mean of its vertex positions.
 
-use sixfold::{FaceMap, MeshQuery, Point, Relation};
+use sixfold::{FaceMap, MeshQuery, Point};
 
-use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
 use crate::sweeps::{Elements, Outputs, SweepResult, count_each};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "face_barycenter",
-    about: "stores the mean of the corners of each face",
-    unit: Unit::Element(ElementKind::Face),
-    visits: &[(ElementKind::Face, &[Relation::FaceVertices])],
-    checksum: Checksum::FaceValues,
-    noise: noise_of_corners,
-    ..Description::TRAVERSAL
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(

@@ -1,21 +1,9 @@
 //! Traverses all faces breadth first and adds the depths of the faces.
 
-use sixfold::{FaceId, MeshQuery, Relation};
+use sixfold::MeshQuery;
 
-use super::{Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "ff_bfs",
-    about: "visits the faces breadth first",
-    unit: Unit::Element(ElementKind::Face),
-    visits: &[(ElementKind::Face, &[Relation::FaceFaces])],
-    takes_samples: false,
-    allocates: true,
-    depends_on_order: true,
-    result_bytes: Some(|counts| size_of::<FaceId>() * counts.faces),
-    ..Description::TRAVERSAL
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(

@@ -2,67 +2,7 @@
 
 use sixfold::{MeshQuery, Relation};
 
-use super::{Description, ElementKind, Unit, Visits};
 use crate::sweeps::{SweepResult, query_each};
-
-/// The description of each relation, in the order of [`Relation::ALL`].
-pub(super) const DESCRIPTIONS: [Description; 9] = [
-    describe(
-        Relation::VertexVertices,
-        "the other ends of the edges at each vertex",
-        &[(ElementKind::Vertex, &[Relation::VertexVertices])],
-    ),
-    describe(
-        Relation::VertexEdges,
-        "the edges that end at each vertex",
-        &[(ElementKind::Vertex, &[Relation::VertexEdges])],
-    ),
-    describe(
-        Relation::VertexFaces,
-        "the faces around each vertex",
-        &[(ElementKind::Vertex, &[Relation::VertexFaces])],
-    ),
-    describe(
-        Relation::EdgeVertices,
-        "the two ends of each edge",
-        &[(ElementKind::Edge, &[Relation::EdgeVertices])],
-    ),
-    describe(
-        Relation::EdgeEdges,
-        "the edges that share an end with each edge",
-        &[(ElementKind::Edge, &[Relation::EdgeEdges])],
-    ),
-    describe(
-        Relation::EdgeFaces,
-        "the faces along each edge",
-        &[(ElementKind::Edge, &[Relation::EdgeFaces])],
-    ),
-    describe(
-        Relation::FaceVertices,
-        "the corners of each face",
-        &[(ElementKind::Face, &[Relation::FaceVertices])],
-    ),
-    describe(
-        Relation::FaceEdges,
-        "the sides of each face",
-        &[(ElementKind::Face, &[Relation::FaceEdges])],
-    ),
-    describe(
-        Relation::FaceFaces,
-        "the faces that share an edge with each face",
-        &[(ElementKind::Face, &[Relation::FaceFaces])],
-    ),
-];
-
-const fn describe(relation: Relation, about: &'static str, visits: Visits) -> Description {
-    Description {
-        name: relation.name(),
-        about,
-        unit: Unit::Element(ElementKind::queried_by(relation)),
-        visits,
-        ..Description::QUERIES
-    }
-}
 
 /// **Timed**: queries `relation` of all elements.
 ///

@@ -1,95 +1,15 @@
 //! One step of Catmull–Clark or Loop subdivision, on one thread.
 
-use std::collections::BTreeSet;
 use std::hint::black_box;
 use std::sync::OnceLock;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sixfold::subdivision::{FaceKind, Method, Scheme, SubdivisionError};
-use sixfold::{Creases, Point, PolygonMesh, Relation, VertexId};
-use sixfold_results::OperationGroup;
+use sixfold::subdivision::{FaceKind, SubdivisionError};
+use sixfold::{Creases, PolygonMesh};
 
-use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
 use crate::backend::Backend;
-use crate::job::{ElementSample, Outcome, TimedRun};
-use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
-
-/// The description of one step by `scheme`, for each method.
-pub(super) const CATMULL_CLARK: [Description; 3] = [
-    describe(
-        (Scheme::CatmullClark, Method::Gather),
-        "catmull_clark_gather",
-        "Catmull–Clark; new points query neighbours",
-    ),
-    describe(
-        (Scheme::CatmullClark, Method::Scatter),
-        "catmull_clark_scatter",
-        "Catmull–Clark; one pass over the faces",
-    ),
-    describe(
-        (Scheme::CatmullClark, Method::Native),
-        "catmull_clark_native",
-        "Catmull–Clark; splits the structure's tables",
-    ),
-];
-
-pub(super) const LOOP: [Description; 3] = [
-    describe(
-        (Scheme::Loop, Method::Gather),
-        "loop_gather",
-        "Loop; new points query neighbours",
-    ),
-    describe(
-        (Scheme::Loop, Method::Scatter),
-        "loop_scatter",
-        "Loop; one pass over the faces",
-    ),
-    describe(
-        (Scheme::Loop, Method::Native),
-        "loop_native",
-        "Loop; splits the structure's tables",
-    ),
-];
-
-const fn describe(step: (Scheme, Method), name: &'static str, about: &'static str) -> Description {
-    const EDGES: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
-    const FACES: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
-    let (scheme, method) = step;
-    Description {
-        name,
-        about,
-        unit: Unit::NewFace,
-        group: OperationGroup::Subdivision,
-        visits: match (method, scheme) {
-            (Method::Scatter, _) => &[(ElementKind::Face, FACES)],
-            (_, Scheme::Loop) => &[
-                (ElementKind::Vertex, &[Relation::VertexVertices]),
-                (ElementKind::Edge, EDGES),
-                (ElementKind::Face, FACES),
-            ],
-            _ => &[
-                (
-                    ElementKind::Vertex,
-                    &[Relation::VertexVertices, Relation::VertexFaces],
-                ),
-                (ElementKind::Edge, EDGES),
-                (ElementKind::Face, FACES),
-            ],
-        },
-        checksum: Checksum::Positions,
-        noise: noise_of_corners,
-        takes_samples: false,
-        allocates: true,
-        grows_tables: matches!(method, Method::Native),
-        elements: match scheme {
-            Scheme::Loop => |polygons| polygons.face_count().saturating_mul(4),
-            _ => PolygonMesh::corner_count,
-        },
-        subdivision: Some(step),
-        ..Description::QUERIES
-    }
-}
+use sixfold_measure::{ElementSample, Outcome, Series, TimedRun, patch};
 
 /// Subdivides all faces, or a patch if there is a sample.
 pub(crate) fn run(
@@ -183,47 +103,6 @@ fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), Subd
         }),
         None => Ok(()),
     }
-}
-
-/// Returns a mesh of about the first `size` faces of `polygons`. Faces that touch other faces only
-/// at a vertex are left out, so that every structure that holds `polygons` also holds the patch.
-/// O(size · log size) for each of a few passes.
-pub fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
-    let faces = polygons.faces().iter().take(size.max(1));
-    let mut faces: Vec<&[VertexId]> = faces.map(|(_, corners)| corners).collect();
-    loop {
-        let mesh = submesh(polygons, &faces);
-        let mut taken: BTreeSet<VertexId> = BTreeSet::new();
-        let singular: BTreeSet<VertexId> = mesh.vertices_of_several_fans().into_iter().collect();
-        if singular.is_empty() {
-            return mesh;
-        }
-        // Keep the first face at each such vertex. Each pass removes faces, so the loop ends.
-        let corners = mesh.faces().iter().map(|(_, corners)| corners);
-        let is_kept: Vec<bool> = corners
-            .map(|corners| {
-                let at = corners.iter().filter(|v| singular.contains(v));
-                let at: Vec<VertexId> = at.copied().collect();
-                let free = at.iter().all(|v| !taken.contains(v));
-                taken.extend(at);
-                free
-            })
-            .collect();
-        let mut is_kept = is_kept.into_iter();
-        faces.retain(|_| is_kept.next().unwrap_or(false));
-    }
-}
-
-/// Builds the mesh of some faces of `polygons`.
-fn submesh(polygons: &PolygonMesh, faces: &[&[VertexId]]) -> PolygonMesh {
-    let mut used: Vec<VertexId> = faces.iter().copied().flatten().copied().collect();
-    used.sort_unstable();
-    used.dedup();
-    let number = |v: &VertexId| used.partition_point(|u| u < v) as u32;
-    let renumbered = faces.iter().map(|face| face.iter().map(number).collect());
-    let renumbered: Vec<Vec<u32>> = renumbered.collect();
-    let positions: Vec<Point> = used.iter().map(|&v| polygons.position(v)).collect();
-    PolygonMesh::new(positions, renumbered).expect("faces of a mesh, with their own vertices")
 }
 
 #[cfg(test)]

@@ -1,20 +1,10 @@
 //! Stores the normal of each face, and then for each vertex the normalised sum of the normals of its
 //! faces.
 
-use sixfold::{FaceMap, MeshQuery, Point, PolygonMesh, Relation, VertexMap};
+use sixfold::{FaceMap, MeshQuery, Point, VertexMap};
 
-use super::{Checksum, Description, ElementKind, Unit};
 use crate::sweeps::{Elements, Outputs, SweepResult, count_each};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "vertex_normal",
-    about: "stores the normals of faces, then of vertices",
-    unit: Unit::Element(ElementKind::Vertex),
-    visits: &[(ElementKind::Face, &[Relation::FaceVertices]), (ElementKind::Vertex, &[Relation::VertexFaces])],
-    checksum: Checksum::VertexValues,
-    noise: |polygons| 12.0 * cancelled_normals(polygons) as f64,
-    ..Description::TRAVERSAL
-};
+use sixfold_measure::ElementKind;
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(
@@ -73,25 +63,4 @@ fn vertex_normals<M: MeshQuery, E: Elements<M>>(
             sum
         };
     })
-}
-
-/// Counts the vertices whose face normals cancel. The direction of their sum is noise.
-fn cancelled_normals(polygons: &PolygonMesh) -> usize {
-    let mut sums = vec![(Point::ZERO, 0.0_f32); polygons.vertex_count()];
-    for (_, face) in polygons.faces().iter() {
-        let at = |corner: usize| polygons.position(face[corner]);
-        let spokes = (1..face.len() - 1).map(|i| (at(i) - at(0)).cross(at(i + 1) - at(0)));
-        let (mut normal, mut size) = (Point::ZERO, 0.0);
-        for cross in spokes {
-            normal += cross;
-            size += cross.length();
-        }
-        for &v in face {
-            let (sum, total) = &mut sums[v.index()];
-            *sum += normal;
-            *total += size;
-        }
-    }
-    let cancels = |(sum, total): &&(Point, f32)| *total > 0.0 && sum.length() < 1e-3 * total;
-    sums.iter().filter(cancels).count()
 }

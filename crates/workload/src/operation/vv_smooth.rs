@@ -2,25 +2,12 @@
 
 use std::hint::black_box;
 
-use sixfold::{MeshQuery, Point, Relation, Representation, VertexMap};
+use sixfold::{MeshQuery, Point, Representation, VertexMap};
 use sixfold_results::Time;
 
-use super::{Checksum, Description, ElementKind, Unit, noise_of_corners};
-use crate::sweeps::{All, Elements, Outputs, SweepResult, count_each, field_sum};
-use crate::job::{Outcome, TimedRun};
-use crate::series::{ReusedCopies, Series};
+use crate::sweeps::{All, Elements, Outputs, SweepResult, count_each};
 use crate::timed_structure::{fill_caches, fill_caches_with_outputs};
-
-pub(super) const DESCRIPTION: Description = Description {
-    name: "vv_smooth",
-    about: "moves each vertex to its neighbours' mean",
-    unit: Unit::Element(ElementKind::Vertex),
-    visits: &[(ElementKind::Vertex, &[Relation::VertexVertices])],
-    checksum: Checksum::VertexValues,
-    noise: noise_of_corners,
-    pauses_clock: true,
-    ..Description::TRAVERSAL
-};
+use sixfold_measure::{ElementKind, Outcome, ReusedCopies, Series, TimedRun, field_sum};
 
 #[inline]
 pub(super) fn sweep<M: MeshQuery, E: Elements<M>>(

@@ -8,7 +8,7 @@ use sixfold::{
 use sixfold_core::{Measured, Traced};
 
 use super::*;
-use crate::read_probe::LINE_BYTES;
+use sixfold_measure::LINE_BYTES;
 
 #[derive(Default)]
 struct Collected(Vec<Reads>);

@@ -3,14 +3,12 @@
 use std::hint::black_box;
 
 use super::queries::{Input, Triangle, Vertex};
-use crate::clock::Clock;
-use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
-use crate::series::Series;
 use sixfold::spatial::{
     Bvh, Item, ItemList, KdTree, Neighbour, Octree, PointQueries, SpatialError, SpatialIndex,
     SurfaceQueries, UniformGrid,
 };
 use sixfold::{QueryCost, VertexId};
+use sixfold_measure::{Clock, Job, Outcome, Series, Task, TimedBackend, TimedRun};
 use sixfold_results::{SpatialTask, Time};
 
 /// The name of the list, which visits all elements for each query.
@@ -211,7 +209,7 @@ fn time_build<T: SpatialIndex<I>, I: Item>(items: &[I], series: &Series<'_>) -> 
 /// Returns the time of `work` and its result.
 fn timed<R>(clock: &dyn Clock, work: impl FnOnce() -> R) -> (Time, R) {
     let mut result = None;
-    let time = crate::clock::timed(clock, || result = Some(work()));
+    let time = sixfold_measure::timed(clock, || result = Some(work()));
     (time, result.expect("the work was run"))
 }
 

@@ -1,7 +1,8 @@
 //! Passes of edits and single edits do the same work on every structure.
 
 use sixfold::{Edit, shapes};
-use sixfold_workload::{Backend, EditPass, Edits, MachineClock, Series, SingleEdit};
+use sixfold_measure::{EditPass, MachineClock, Series};
+use sixfold_workload::{Backend, Edits, SingleEdit};
 
 #[test]
 fn every_structure_does_the_same_work() {
@@ -9,7 +10,7 @@ fn every_structure_does_the_same_work() {
     for pass in EditPass::ALL {
         let mut results = Vec::new();
         for backend in Backend::structures() {
-            let editor = pass.prepare(&backend, &polygons);
+            let editor = backend.prepare_pass(pass, &polygons);
             let mut editor = editor.expect("all six").expect("triangles");
             let clock = MachineClock::start();
             editor.time(&Series::once(&clock));
@@ -49,7 +50,7 @@ fn structures_that_refuse_the_same_edits_have_the_same_hash() {
         for polygons in &meshes {
             let hashes = manifold.map(|name| {
                 let backend = Backend::find(name).expect("one of six");
-                let editor = pass.prepare(&backend, polygons).expect("has edits");
+                let editor = backend.prepare_pass(pass, polygons).expect("has edits");
                 let mut editor = editor.expect("triangles");
                 editor.time(&Series::once(&MachineClock::start()));
                 let Edits {
@@ -71,8 +72,8 @@ fn structures_that_refuse_the_same_edits_have_the_same_hash() {
 #[test]
 fn polygons_are_refused_with_the_first_such_face() {
     let half_edge = Backend::find("half-edge").expect("one of six");
-    let refused = EditPass::FlipAll
-        .prepare(&half_edge, &shapes::cube())
+    let refused = half_edge
+        .prepare_pass(EditPass::FlipAll, &shapes::cube())
         .expect("it can be edited");
     let Err(refusal) = refused else {
         panic!("quads were accepted")

@@ -1,9 +1,10 @@
 //! Checks that a mix does the same work on every structure.
 
 use sixfold::{PolygonMesh, shapes};
+use sixfold_measure::{Job, MachineClock, Operation, Outcome, Series, Task};
 use sixfold_workload::{
-    Access, Action, Backend, Draw, Job, MachineClock, MixBackend, MixRefusal, Operation, Outcome,
-    Route, Schedule, Series, Task, Workload, built_in, built_ins, prepare_mix, tabulate,
+    Access, Action, Backend, Draw, MixBackend, MixRefusal, Route, Schedule, Workload, built_in,
+    built_ins, prepare_mix, tabulate,
 };
 
 struct Fixture {

@@ -1,9 +1,8 @@
 //! Checks which elements an operation on a sample visits.
 
 use sixfold::shapes;
-use sixfold_workload::{
-    Backend, Draw, ElementSample, Job, MachineClock, Operation, Outcome, Series, Task,
-};
+use sixfold_measure::{ElementSample, Job, MachineClock, Operation, Outcome, Series, Task};
+use sixfold_workload::{Backend, Draw};
 
 /// Runs `operation` on every structure. Of the kinds in `scanned`, only `size` elements are visited.
 fn outcomes(operation: Operation, scanned: [bool; 3], size: usize) -> Vec<Outcome> {

@@ -1,6 +1,6 @@
 //! Divides a time budget among the sizes of one shape.
 
-use sixfold_workload::Clock;
+use sixfold_measure::Clock;
 
 use crate::engine::effort::{Budget, Effort};
 

@@ -3,8 +3,9 @@
 use sixfold_core::Counts;
 
 use super::settings::scaled;
+use sixfold_measure::Operation;
 use sixfold_results::{Cache, CacheLimit, Fit, SizeReport, Slope};
-use sixfold_workload::{Backend, Operation};
+use sixfold_workload::Backend;
 
 pub(super) fn fits(
     sizes: &[SizeReport],

@@ -1,9 +1,9 @@
 //! Sentences about the results of one shape in several sizes.
 
 use super::{CacheLimit, Fit};
+use sixfold_measure::Operation;
 use sixfold_results::numbers::{grouped, list, times};
 use sixfold_results::{Agreement, Cache, ResultRow, SizeReport, Slope, Standing, last_level_bytes};
-use sixfold_workload::Operation;
 
 pub(super) fn sentences(
     sizes: &[SizeReport],

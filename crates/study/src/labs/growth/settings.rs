@@ -7,11 +7,12 @@ use sixfold::{Facts, UnknownName};
 
 use super::shapes::{SCALABLE_SHAPES, ScalableShape};
 use crate::engine::effort::Effort;
-use crate::inspect::{StudyMesh, inspect};
+use crate::inspect::inspect;
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
+use sixfold_measure::{Operation, StudyMesh};
 use sixfold_results::{BackendRefusal, BackendReport};
-use sixfold_workload::{Backend, Operation};
+use sixfold_workload::Backend;
 
 /// Minimum number of faces. Smaller meshes are too short to time.
 const MIN_FACES: usize = 100;

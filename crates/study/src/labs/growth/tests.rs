@@ -5,8 +5,8 @@ use std::time::Duration;
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::labs::study::Settings;
+use sixfold_measure::{Operation, Task};
 use sixfold_results::{Finding, Results};
-use sixfold_workload::{Operation, Task};
 
 fn small(effort: Effort) -> GrowthSettings {
     let operations = ["vertex_vertices", "face_vertices"];

@@ -2,8 +2,8 @@
 //! known.
 
 use sixfold::{PolygonMesh, UnknownName};
+use sixfold_measure::Task;
 use sixfold_results::Agreement;
-use sixfold_workload::Task;
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};

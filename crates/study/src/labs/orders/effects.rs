@@ -2,10 +2,10 @@
 
 use sixfold::shapes::Order;
 
+use sixfold_measure::Operation;
 use sixfold_results::launches::ratio_over_launches;
 use sixfold_results::ranking::quotient;
 use sixfold_results::{Comparison, Confidence, Factor, Larger, OrderEffect, StructureEffect, Time};
-use sixfold_workload::Operation;
 
 /// The time of one operation on one structure in one order.
 pub(super) struct OrderTime<'t> {

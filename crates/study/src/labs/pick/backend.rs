@@ -3,15 +3,15 @@
 use std::num::NonZeroU32;
 use std::time::Duration;
 
-use sixfold::{Edit, PolygonMesh, Relation};
+use sixfold::{Edit, PolygonMesh};
 use sixfold_core::Counts;
-use sixfold_workload::{Action, Backend, EditPlaceError, MixBackend, Operation, Schedule};
+use sixfold_measure::Operation;
+use sixfold_workload::{Action, Backend, EditPlaceError, MixBackend, Schedule};
 
 use crate::engine::bench::{Bench, Columns, Trial};
 use crate::engine::effort::Effort;
 use crate::engine::machine::Machine;
-use crate::labs::pick::choice::position;
-use crate::labs::pick::measurement::Contestant;
+use sixfold_measure::pick::{Candidate, MeasuredBackend as Contestant, position};
 
 /// A structure or relation tables, ready for the mix.
 pub(crate) struct PickBackend<'a> {
@@ -20,29 +20,6 @@ pub(crate) struct PickBackend<'a> {
     pub(crate) structure: Option<Backend>,
     /// The structure from which relation tables were made; `None` for a structure.
     pub(crate) made_from: Option<&'static str>,
-}
-
-/// The properties of a backend that the evaluation needs. Its index is that of the measured
-/// subject.
-pub(crate) struct Candidate {
-    pub(crate) name: String,
-    pub(crate) structure: Option<Backend>,
-    pub(crate) made_from: Option<&'static str>,
-    /// The paths of the types that a program needs to use the backend.
-    pub(crate) type_paths: Vec<&'static str>,
-    /// The relations of relation tables.
-    pub(crate) tabulated: Vec<Relation>,
-    /// By part of the mix: whether one operation scans all faces.
-    pub(crate) scans: Vec<bool>,
-    pub(crate) bytes: usize,
-}
-
-impl Candidate {
-    /// Returns whether some part scans all faces. If so, the parts are timed one by one: the part
-    /// that scans dominates the others, and the state of the caches hardly matters.
-    pub(crate) fn scans(&self) -> bool {
-        self.scans.contains(&true)
-    }
 }
 
 impl<'a> PickBackend<'a> {
@@ -69,7 +46,7 @@ impl<'a> PickBackend<'a> {
     pub(crate) fn split(self) -> Contestant<'a> {
         let candidate = Candidate {
             name: self.mixer.name().to_owned(),
-            structure: self.structure,
+            info: self.structure.map(|structure| structure.info),
             made_from: self.made_from,
             type_paths: self.mixer.type_paths(),
             tabulated: self.mixer.tabulated(),
@@ -133,7 +110,7 @@ const TABLES_BUDGET: Duration = Duration::from_millis(200);
 /// The tables come from the structure with the fewest bytes among the structures that make them
 /// fast: in at most twice the least time. So the choice does not depend on noise.
 pub(crate) fn build_tables<'a>(
-    backends: &[Contestant<'a>],
+    structures: &[(&Candidate, Backend)],
     polygons: &'a PolygonMesh,
     counts: Counts,
     seed: u64,
@@ -141,12 +118,14 @@ pub(crate) fn build_tables<'a>(
     bench: &mut Bench<'_>,
     tabulate: impl Fn(&Backend) -> Option<Box<dyn MixBackend + 'a>>,
 ) -> Option<Contestant<'a>> {
-    let structures = backends.iter().map(|(candidate, _)| candidate);
-    let made = structures.filter(|c| !c.scans()).filter_map(|candidate| {
+    let each = structures
+        .iter()
+        .filter(|(candidate, _)| !candidate.scans());
+    let made = each.filter_map(|(candidate, structure)| {
         let tables = PickBackend {
-            mixer: tabulate(&candidate.structure?)?,
+            mixer: tabulate(structure)?,
             structure: None,
-            made_from: Some(candidate.structure?.name()),
+            made_from: Some(structure.name()),
         };
         let (tables, built) = tables.hosted(bench.machine, &counts);
         let size = (candidate.bytes, position(&candidate.name));

@@ -1,7 +1,6 @@
 //! The capabilities that a program can require of a structure.
 
 use sixfold_results::Need;
-use sixfold_results::numbers::grouped;
 use sixfold_workload::Backend;
 
 /// Returns why `backend` does not meet `need`; `None` if it meets the need.
@@ -32,13 +31,4 @@ pub(crate) fn unmet_reason(need: Need, backend: &Backend) -> Option<String> {
         ),
     };
     (!has).then(|| format!("{lacks} (--needs {need})"))
-}
-
-/// Returns why a backend of `bytes` bytes is excluded; `None` if it may take so many.
-pub(crate) fn over_memory_limit(bytes: u64, most: Option<u64>) -> Option<String> {
-    let most = most.filter(|&most| bytes > most)?;
-    let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
-    Some(format!(
-        "it takes {bytes} bytes, but --max-memory allows only {most}"
-    ))
 }

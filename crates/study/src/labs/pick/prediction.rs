@@ -4,9 +4,9 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::{QueryCost, Relation};
 use sixfold_core::Counts;
-use sixfold_workload::{Action, Backend, ElementKind, Schedule, Workload, patch};
+use sixfold_measure::{ElementKind, StudyMesh, patch};
+use sixfold_workload::{Action, Backend, Schedule, Workload};
 
-use crate::inspect::StudyMesh;
 use crate::labs::pick::{PickError, PickSettings, qualified};
 use crate::labs::why::{WhySettings, why};
 use sixfold_results::Excluded;
@@ -194,8 +194,9 @@ fn elements(relation: Relation, counts: &Counts) -> f64 {
 #[cfg(test)]
 mod tests {
     use sixfold::shapes;
+    use sixfold_measure::Operation;
     use sixfold_results::{Confidence, Policy};
-    use sixfold_workload::{Operation, built_in};
+    use sixfold_workload::built_in;
 
     use super::*;
     use crate::engine::effort::Effort;

@@ -4,36 +4,16 @@
 use sixfold::PolygonMesh;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold_core::Counts;
-use sixfold_results::{MIX, PartCost, RUN, Time};
-use sixfold_workload::{Action, Operation, Schedule, Task, Workload};
+use sixfold_measure::{Operation, Task};
+use sixfold_results::{MIX, PartCost, Time};
+use sixfold_workload::{Action, Schedule, Workload};
 
 use crate::engine::measure::Entry;
-use crate::labs::pick::backend::Candidate;
-use crate::labs::pick::break_even::MeasuredMix;
+use sixfold_measure::pick::{Candidate, MeasuredMix, TaskPlan, with_own_time};
 use sixfold_results::statistics::Median;
 
 /// Parts that a mix contains are also timed alone, to explain the result: in every n-th round.
 const PARTS_EVERY: u32 = 3;
-
-/// What the backends of a pick run, and how the time of one operation follows from it.
-pub(crate) trait TaskPlan {
-    /// Returns the entries to measure: for each task, one for each candidate that has it.
-    fn entries(&self, candidates: &[Candidate]) -> Vec<Entry>;
-
-    /// Returns the time of one operation on a candidate, rebuilding included, by round; the reason
-    /// if the candidate refuses a task. `entries` are those of the candidate.
-    fn mix_times(
-        &self,
-        candidate: &Candidate,
-        entries: &[&Entry],
-    ) -> Result<Vec<(u32, Time)>, String>;
-
-    /// Returns the cost of each part of an operation, timed alone.
-    fn parts(&self, measured: &MeasuredMix<'_>) -> Vec<PartCost>;
-
-    /// Returns the number of operations in one use of the mesh.
-    fn operations(&self) -> f64;
-}
 
 /// The schedule of a workload on a mesh, with what is needed to weigh its parts.
 pub(crate) struct Tasks<'t> {
@@ -88,7 +68,7 @@ impl<'t> Tasks<'t> {
         match self.schedule.parts[part].action {
             Action::Pass(operation) => Task::Operation(operation),
             Action::Subdivide => {
-                let method = candidate.method(self.scheme);
+                let method = method(candidate, self.scheme);
                 Task::Operation(match self.scheme {
                     Scheme::Loop => Operation::Loop(method),
                     _ => Operation::CatmullClark(method),
@@ -190,26 +170,6 @@ pub(crate) fn mix_entry(column: usize, schedule: &Schedule) -> Entry {
     }
 }
 
-/// Returns the entry for a run of a program. A program that changes the mesh runs on copies, which are
-/// made outside the timing.
-pub(crate) fn program_entry(column: usize, changes_mesh: bool) -> Entry {
-    Entry {
-        pauses_clock: changes_mesh,
-        ..Entry::of_task(column, Task::Program, RUN)
-    }
-}
-
-/// Adds the time of the program's own work to each sample.
-pub(crate) fn with_own_time(samples: Vec<(u32, Time)>, own_ns: f64) -> Vec<(u32, Time)> {
-    if own_ns == 0.0 {
-        return samples;
-    }
-    let samples = samples.into_iter();
-    samples
-        .map(|(round, time)| (round, time.plus_ns(own_ns)))
-        .collect()
-}
-
 /// Returns the weighted sum of several series of samples, in the rounds of the longest one. A
 /// series without a sample in a round takes part with its last sample before that round, or with
 /// its first. Empty if a series is empty.
@@ -231,17 +191,21 @@ fn sum_by_round(terms: &[(f64, Vec<(u32, Time)>)]) -> Vec<(u32, Time)> {
         .collect()
 }
 
-impl Candidate {
-    /// Returns the method of subdivision that this candidate uses; relation tables do not subdivide.
-    fn method(&self, scheme: Scheme) -> Method {
-        let support = self.structure.map(|s| s.info.support(scheme));
-        let best = support.and_then(|support| support.default_method());
-        best.unwrap_or(Method::Scatter)
-    }
+/// Returns the method of subdivision that `candidate` uses; relation tables do not subdivide.
+fn method(candidate: &Candidate, scheme: Scheme) -> Method {
+    let support = candidate.info.map(|info| info.support(scheme));
+    let best = support.and_then(|support| support.default_method());
+    best.unwrap_or(Method::Scatter)
 }
 
 #[cfg(test)]
 mod tests {
+    use sixfold::shapes;
+    use sixfold_measure::pick::measurement::Evaluation;
+    use sixfold_results::ranking::NO_DIFFERENCE;
+    use sixfold_results::{Confidence, Ranked};
+    use sixfold_workload::built_in;
+
     use super::*;
 
     fn samples(times: &[(u32, f64)]) -> Vec<(u32, Time)> {
@@ -258,5 +222,73 @@ mod tests {
         assert_eq!(sums, samples(&expected));
         assert_eq!(sum_by_round(&[(1.0, every_round), (1.0, Vec::new())]), []);
         assert_eq!(sum_by_round(&[]), []);
+    }
+
+    /// A mix of 9 ns of which the time is only estimated, and mixes of 10 and 20 ns.
+    #[test]
+    fn estimates_are_compared_with_the_fastest_measured_time_and_come_last() {
+        let polygons = shapes::octahedron();
+        let counts = polygons.counts(12);
+        let workload = built_in("geodesic-dijkstra").expect("a built-in workload");
+        let schedule = Schedule::new(&workload, &counts);
+        let plan = Tasks::new(&workload, &schedule, &polygons, &counts);
+        let times = |ns: f64| {
+            (0..5)
+                .map(|round| (round, Time::from_wall_ns(ns)))
+                .collect()
+        };
+        let candidate = |name: &str| Candidate {
+            name: name.into(),
+            info: None,
+            made_from: None,
+            type_paths: Vec::new(),
+            tabulated: Vec::new(),
+            scans: vec![false; schedule.parts.len()],
+            bytes: 1,
+        };
+        let [soup, fast, slow] = ["polygon-soup", "half-edge", "face-vertex"].map(candidate);
+        let build = Entry {
+            samples: times(1000.0),
+            ..Entry::new(0, Operation::Build)
+        };
+        let estimate = Entry {
+            estimate: Some(Time::from_wall_ns(9.0)),
+            ..Entry::of_task(0, Task::Mix, "mix")
+        };
+        let mix = |candidate, ns, estimated: bool| MeasuredMix {
+            candidate,
+            entries: [&build, &estimate][..1 + usize::from(estimated)].to_vec(),
+            samples: times(ns),
+        };
+        let ranking = |measured: &[MeasuredMix<'_>]| {
+            let evaluation = Evaluation {
+                plan: &plan,
+                counts: &counts,
+                measured,
+                confidence: Confidence::default(),
+            };
+            evaluation.ranking(NO_DIFFERENCE)
+        };
+        let rows = ranking(&[
+            mix(&soup, 9.0, true),
+            mix(&slow, 20.0, false),
+            mix(&fast, 10.0, false),
+        ]);
+        let row = |r: &Ranked| {
+            (
+                r.backend.clone(),
+                (1e6 * r.ratio_to_best).round() / 1e6,
+                r.tied_with_best,
+                r.estimated,
+            )
+        };
+        let expected = [
+            ("half-edge".to_owned(), 1.0, true, false),
+            ("face-vertex".to_owned(), 2.0, false, false),
+            ("polygon-soup".to_owned(), 0.9, false, true),
+        ];
+        assert_eq!(rows.iter().map(row).collect::<Vec<_>>(), expected);
+        let only = ranking(&[mix(&soup, 9.0, true)]);
+        assert!(only[0].estimated && only[0].ratio_to_best == 1.0);
     }
 }

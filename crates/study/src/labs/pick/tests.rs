@@ -1,14 +1,13 @@
 //! Tests with mixers of known costs, on a simulated machine whose speed drifts.
 
 use sixfold::{PolygonMesh, QueryCost, shapes};
+use sixfold_measure::{Job, Operation, Outcome, Series, Task, TimedBackend, TimedRun};
 use sixfold_results::{Confidence, Policy, Ranked, Results, Status};
-use sixfold_workload::{
-    Job, MixBackend, Operation, Outcome, Series, Task, TimedBackend, TimedRun, built_in,
-};
+use sixfold_workload::{MixBackend, built_in};
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
-use crate::labs::pick::measurement::MeshOutcome;
+use sixfold_measure::pick::measurement::MeshOutcome;
 
 struct KnownBackend {
     name: &'static str,
@@ -515,7 +514,7 @@ fn an_interrupted_measurement_keeps_its_samples() {
 fn each_fault_of_a_pick_has_a_warning() {
     let mut report =
         quick(&settings(Effort::of_rounds(8)), &[shapes::octahedron()]).expect("a report");
-    let of_machine = reasons::warnings(&report);
+    let of_machine = sixfold_measure::pick::reasons::warnings(&report);
     assert!(
         !of_machine.iter().any(|w| w.contains("not significant")),
         "{of_machine:?}"
@@ -523,7 +522,7 @@ fn each_fault_of_a_pick_has_a_warning() {
     report.noise = Some(1.2);
     report.preliminary = true;
     report.mismatches = vec!["half-edge".into()];
-    let warnings = reasons::warnings(&report);
+    let warnings = sixfold_measure::pick::reasons::warnings(&report);
     let added = &warnings[of_machine.len()..];
     assert_eq!(added.len(), 3, "{added:?}");
     for (warning, part) in added
@@ -592,7 +591,9 @@ fn a_launch_with_cold_caches_counts_only_without_better_ones() {
         }
         launch
     };
-    let pooled = |launches: [PickReport; 3]| pool_picks(launches.into()).ranking[0].clone();
+    let pooled = |launches: [PickReport; 3]| {
+        sixfold_measure::pick::pool_picks(launches.into()).ranking[0].clone()
+    };
     let warm = pooled([launch(10.0, false), launch(12.0, false), launch(99.0, true)]);
     assert_eq!(warm.launch_ns, [Some(10.0), Some(12.0), None]);
     assert!(!warm.warm_up_only && !measured.ranking[0].warm_up_only);

@@ -2,9 +2,9 @@
 
 use sixfold::subdivision::Method;
 
+use sixfold_measure::Operation;
 use sixfold_results::numbers::{rounded_down, shown_ratio, times};
 use sixfold_results::{BackendReport, ResultRow};
-use sixfold_workload::Operation;
 
 /// Minimum ratio of two methods that is reported.
 const MIN_RATIO: f64 = 1.1;

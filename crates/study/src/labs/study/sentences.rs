@@ -164,7 +164,7 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
 #[cfg(test)]
 pub(crate) fn row(
     backend: &str,
-    operation: sixfold_workload::Operation,
+    operation: sixfold_measure::Operation,
     ratio: f64,
     standing: sixfold_results::Standing,
 ) -> ResultRow {
@@ -184,13 +184,14 @@ pub(crate) fn row(
 mod tests {
     use sixfold::shapes;
     use sixfold::subdivision::Method::{Gather, Native, Scatter};
+    use sixfold_measure::{Operation, StudyMesh};
     use sixfold_results::Run;
-    use sixfold_workload::{Backend, Operation};
+    use sixfold_workload::Backend;
 
     use sixfold_results::{Control, ControlRow, Standing};
 
     use super::*;
-    use crate::inspect::{StudyMesh, inspect};
+    use crate::inspect::inspect;
 
     /// Returns a report on a tetrahedron with these results.
     fn report(results: Vec<ResultRow>) -> Report {

@@ -8,8 +8,8 @@ use sixfold_results::Agreement;
 
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
+use sixfold_measure::{ElementKind, Task};
 use sixfold_results::{RefusalKind, Results, Standing};
-use sixfold_workload::{ElementKind, Task};
 
 /// Speeds of machines, relative to the usual one.
 const SPEEDS: [f64; 3] = [1.0, 0.02, 50.0];
@@ -592,4 +592,38 @@ fn a_study_on_this_machine_measures_what_its_settings_name() {
     let expected = ["half-edge", "corner-table"].map(|name| (name, "boundary", true));
     assert_eq!(rows, expected);
     assert_eq!(report.run.settings.seed, 5);
+}
+
+#[test]
+fn equally_many_refusals_of_different_edits_are_other_edits() {
+    use Agreement::{OtherEdits, Same};
+    let clock = MachineClock::start();
+    let operation = "split_collapse".parse().expect("an edit pass");
+    let names = ["indexed-face-set", "corner-table", "half-edge"];
+    // Two triangles on the same three vertices.
+    let pillow = PolygonMesh::new(
+        [sixfold::Point::ZERO, sixfold::Point::X, sixfold::Point::Y],
+        [[0, 1, 2], [0, 2, 1]],
+    );
+    let pillow = pillow.expect("valid");
+    let mut entries = Vec::new();
+    let mut subjects = Vec::new();
+    for (i, name) in names.into_iter().enumerate() {
+        let backend = Backend::find(name).expect("a structure");
+        let (mut subject, _) = backend.prepare(&pillow, None).expect("a closed manifold");
+        let mut entry = crate::engine::measure::Entry::new(i, operation);
+        let series = sixfold_measure::Series::once(&clock).with_result();
+        entry.outcome = subject.run(&entry.job, &series).outcome;
+        entries.push(entry);
+        subjects.push(subject);
+    }
+    let stop = AtomicBool::new(false);
+    let agreements = crate::engine::agreement::compare_checksums(
+        &entries,
+        &mut subjects,
+        &pillow,
+        &clock,
+        &stop,
+    );
+    assert_eq!(agreements, [OtherEdits, Same, Same]);
 }

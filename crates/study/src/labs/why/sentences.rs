@@ -122,8 +122,8 @@ mod tests {
     use sixfold_results::BufferSpeed;
 
     use super::*;
-    use crate::inspect::StudyMesh;
     use crate::labs::why::{Timed, WhySettings, why};
+    use sixfold_measure::StudyMesh;
     use sixfold_results::Agreement;
 
     fn timed(bound: Bound) -> Option<Timed> {

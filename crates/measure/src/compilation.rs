@@ -1,0 +1,30 @@
+//! How the timed code was compiled.
+
+/// How this crate was compiled, which has all code that studies time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Compilation {
+    /// Version of the Rust compiler.
+    pub rustc: &'static str,
+    /// Build profile, such as `release`.
+    pub profile: &'static str,
+    /// Optimisation level of this crate: `0` to `3`, `s` or `z`. Other crates of a program can have
+    /// another level.
+    pub opt_level: &'static str,
+    /// Additional flags of the Rust compiler, separated by spaces.
+    pub rustflags: &'static str,
+    /// The cargo features of this crate, separated by commas.
+    pub features: &'static str,
+    /// Target triple.
+    pub target: &'static str,
+}
+
+/// How this crate was compiled.
+pub const COMPILATION: Compilation = Compilation {
+    rustc: env!("MEASURE_RUSTC"),
+    profile: env!("MEASURE_PROFILE"),
+    opt_level: env!("MEASURE_OPT_LEVEL"),
+    rustflags: env!("MEASURE_RUSTFLAGS"),
+    features: env!("MEASURE_FEATURES"),
+    target: env!("MEASURE_TARGET"),
+};
