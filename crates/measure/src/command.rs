@@ -9,6 +9,7 @@ pub mod launches;
 pub mod load;
 pub mod mesh_files;
 pub mod meshes;
+mod order;
 pub mod output;
 pub mod programs;
 pub mod progress;

@@ -116,6 +116,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
     };
     let plan = launching.plan(settings.effort, work)?;
     warn_of_debug_build();
+    print_model(&mut session.text, "trace");
     for study_mesh in &study_meshes {
         print_mesh(study_mesh, &mut session.text);
     }
@@ -153,6 +154,16 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
     text.print_line(&hanging_indent("Program:  ", &name));
     text.print_line("");
     finish(report, session, failed, arguments)
+}
+
+/// Says that the ranking is that of a model. On 48 cases, the structure that a workload or a trace named was within 5 % of the
+/// fastest in 42 and 45 of them (reports/validity).
+fn print_model(text: &mut TextOutput, model: &str) {
+    let line = format!(
+        "this {model} stands for a program. The program itself decides: `sixfold new DIR` measures yours, the first \
+         time in about two minutes"
+    );
+    text.print_line(&hanging_indent("Model:    ", &line));
 }
 
 fn print_mesh(study_mesh: &StudyMesh, text: &mut TextOutput) {
@@ -205,6 +216,7 @@ fn print_before_measuring(
     stop: &AtomicBool,
     text: &mut TextOutput,
 ) {
+    print_model(text, "workload");
     for study_mesh in study_meshes {
         print_mesh(study_mesh, text);
     }

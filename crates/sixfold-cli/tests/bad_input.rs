@@ -24,7 +24,7 @@ pub(crate) fn assert_refused(
     assert!(!run.stderr.contains("panicked"), "{run:?}");
     // A pick prints the mesh and the mix before it builds anything.
     assert!(
-        run.stdout.is_empty() || run.stdout.starts_with("Mesh:"),
+        run.stdout.is_empty() || run.stdout.starts_with("Model:"),
         "{arguments:?}: {run:?}"
     );
     assert_eq!(sixfold.names(), before, "{arguments:?} wrote something");

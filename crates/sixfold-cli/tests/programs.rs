@@ -352,6 +352,39 @@ fn different_results_are_shown_with_their_likely_reasons() {
     for reason in ["Likely reasons", "vertex_numbers", "refused edits", "`f64`"] {
         assert!(said.contains(reason), "{reason}: {said}");
     }
+    // In one order of the neighbours, all structures find the same first one.
+    let arguments = [
+        "grid.obj",
+        "--triangulate",
+        "--order",
+        "canonical",
+        "--programs",
+    ];
+    let run = sixfold.run_example(
+        "faulty_programs",
+        &[&arguments[..], &["first-neighbours"]].concat(),
+    );
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.stdout.contains("in the canonical order only"),
+        "{run:?}"
+    );
+    let run = sixfold.run_example(
+        "faulty_programs",
+        &[&arguments[..], &["sound,panicking"]].concat(),
+    );
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(
+        run.stdout.matches("All results agree").count(),
+        2,
+        "{run:?}"
+    );
+    assert!(
+        run.stdout.contains("half-edge: the program panicked"),
+        "{run:?}"
+    );
+    let run = sixfold.run_programs(&["grid.obj", "--triangulate", "--order", "canonical"]);
+    assert_eq!(run.stdout.matches("Program: ").count(), 8, "{run:?}");
 }
 
 fn ranked(finding: &Value) -> Vec<&str> {

@@ -49,6 +49,8 @@ Options:
                         [default: nine tenths of the free memory]
   --record DIR          Write all calls of each program to DIR/PROGRAM.trace, for `sixfold pick --trace` and
                         `sixfold workloads --trace`
+  --order canonical     Run each program once on each structure, in the structure's own order and in one order of all
+                        elements and results, and compare the results; nothing is measured
   --json FILE           Write all results as JSON (- for standard output), for `sixfold report`, `compare`,
                         `merge` and `history`
   --tag KEY=VALUE       Keep KEY=VALUE in the results; may be repeated
@@ -93,6 +95,7 @@ pub struct Arguments {
     pub time_limit: Option<Duration>,
     pub memory_limit: Option<u64>,
     pub record: Option<PathBuf>,
+    pub canonical_order: bool,
     pub json: Option<PathBuf>,
     pub tags: Vec<(String, String)>,
     pub triangulate: bool,
@@ -139,6 +142,7 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Failure
         time_limit: None,
         memory_limit: None,
         record: None,
+        canonical_order: false,
         json: None,
         tags: Vec::new(),
         triangulate: false,
@@ -198,6 +202,13 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Failure
             "time-limit" => all.time_limit = Some(parsed(&name, &text()?, duration)?),
             "memory-limit" => all.memory_limit = Some(parsed(&name, &text()?, bytes)?),
             "record" => all.record = Some(value()?.into()),
+            "order" => {
+                let canonical = |text: &str| {
+                    let only = || "the order can be canonical only".to_owned();
+                    (text == "canonical").then_some(true).ok_or_else(only)
+                };
+                all.canonical_order = parsed(&name, &text()?, canonical)?;
+            }
             "json" => all.json = Some(value()?.into()),
             "tag" => all.tags.push(parsed(&name, &text()?, tag)?),
             "triangulate" => all.triangulate = true,
@@ -228,6 +239,13 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Failure
             all.record.is_some(),
             "--launches",
             all.launches.is_some(),
+        ),
+        ("--order", all.canonical_order, "--json", all.json.is_some()),
+        (
+            "--order",
+            all.canonical_order,
+            "--record",
+            all.record.is_some(),
         ),
     ];
     if let Some((a, _, b, _)) = conflicts.iter().find(|(_, a, _, b)| *a && *b) {
@@ -404,6 +422,7 @@ mod tests {
                 &["--isolate", "--launches", "2"],
                 "--isolate cannot be used with --launches",
             ),
+            (&["--order", "own"], "the order can be canonical only"),
             (&["-x"], "invalid option '-x'"),
             (
                 &["--isolate=yes"],

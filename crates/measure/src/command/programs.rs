@@ -25,7 +25,7 @@ use crate::command::run::{warn_of_debug_build, with_command};
 use crate::command::text::{
     TextOutput, hanging_indent, print_notice, print_stderr, reflow, sanitize, take_notices, width,
 };
-use crate::command::{answer, record};
+use crate::command::{answer, order, record};
 use crate::launches::pool_programs;
 use crate::{
     ChildTask, Effort, Isolation, ProgramSettings, StudyMesh, Suite, SuiteProgram, free_memory,
@@ -65,6 +65,9 @@ pub fn run(suite: Suite) -> Result<ExitCode, Failure> {
     };
     if let Some(task) = &arguments.child {
         return serve(&suite, task, &arguments);
+    }
+    if arguments.canonical_order {
+        return order::run(&suite, &arguments);
     }
     let memory_limit = arguments.memory_limit.or_else(default_memory_limit);
     let settings = ProgramSettings {

@@ -145,7 +145,7 @@ pub fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bo
 }
 
 /// Returns whether two numbers differ only by rounding.
-fn is_close(a: f64, b: f64) -> bool {
+pub fn is_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= TOLERANCE * a.abs().max(b.abs())
 }
 

@@ -85,14 +85,14 @@ pub struct HeapPolicyConflict {
 ///
 /// ```standalone_crate
 /// use sixfold_results::Policy;
-/// use crate::pages::HeapGuard;
+/// use sixfold_measure::pages::HeapGuard;
 ///
 /// let guard = HeapGuard::acquire(Policy::Kept)?;
 /// let error = HeapGuard::acquire(Policy::System).unwrap_err();
 /// assert_eq!(error.active, Policy::Kept);
 /// drop(guard);
 /// HeapGuard::acquire(Policy::System)?;
-/// # Ok::<(), crate::pages::HeapPolicyConflict>(())
+/// # Ok::<(), sixfold_measure::pages::HeapPolicyConflict>(())
 /// ```
 #[derive(Debug)]
 #[must_use = "the policy ends when the guard is dropped"]

@@ -116,8 +116,8 @@ pub fn warnings(report: &PickReport) -> Vec<String> {
 /// The reasons for different results of a program, the most likely first, each with how to test it.
 const WHY_RESULTS_DIFFER: &str = "Likely reasons for different results, the most likely first: (1) a \
     query lists neighbours, edges or faces in another order, and the program takes the first, or the first of \
-    equals: sort them by `vertex_numbers`, and measure again; (2) edges are numbered in another order: sort \
-    them by the numbers of their ends; (3) an edit is refused on one structure, as structures of manifolds do: \
+    equals: the option `--order canonical` tells, and sorting them by `vertex_numbers` mends it; (2) edges are numbered \
+    in another order: the same option tells; (3) an edit is refused on one structure, as structures of manifolds do: \
     count the refused edits in the result; (4) sums of `f32` in another order: add up in `f64`.";
 
 fn name(ranked: &Ranked) -> String {

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::tape::{Tape, TapeState, TapedRun, Watched};
+use super::tape::{Ordered, Tape, TapeState, TapedRun, UseOfNames, Watched};
 use sixfold_results::AskedCount;
 
 use crate::operation::ElementKind;
@@ -105,11 +105,50 @@ impl<M: MeshQuery> Recorded<M> {
     }
 }
 
+impl<M: MeshQuery> Recorded<M> {
+    /// Returns the results of a query in the order of `key`, if the tape asks for it.
+    fn in_order<I: Iterator<Item: Copy>>(
+        &self,
+        items: I,
+        key: impl Fn(&TapeState<M::Vertex, M::Face>, I::Item) -> [u32; 2],
+    ) -> Ordered<I> {
+        let Some(tape) = self.tape.as_ref().filter(|tape| tape.is_canonical()) else {
+            return Ordered::Own(items);
+        };
+        let mut items: Vec<I::Item> = items.collect();
+        let state = tape.lock();
+        items.sort_by_cached_key(|&item| key(&state, item));
+        Ordered::Other(items.into_iter())
+    }
+
+    /// Returns the corners or the sides of a face from the corner with the least number, if the tape asks for it.
+    fn starting_at_least_corner<I: Iterator>(&self, items: I, f: M::Face) -> Ordered<I> {
+        let Some(tape) = self.tape.as_ref().filter(|tape| tape.is_canonical()) else {
+            return Ordered::Own(items);
+        };
+        let mut items: Vec<I::Item> = items.collect();
+        let state = tape.lock();
+        let corners = self.mesh.face_vertices(f).enumerate();
+        let least = corners.min_by_key(|&(_, v)| state.vertex_name(v));
+        let place = least.map_or(0, |(place, _)| place).min(items.len());
+        items.rotate_left(place);
+        Ordered::Other(items.into_iter())
+    }
+}
+
 impl<M: Representation> Recorded<M> {
     /// Starts to keep the calls for [`trace`](Self::trace). `polygons` is the mesh from which the
     /// structure was built. Each call then takes about 50 ns more.
     pub fn start_trace(&mut self, polygons: &PolygonMesh) {
-        self.tape = Some(Tape::new::<M>(polygons));
+        self.tape = Some(Tape::new::<M>(polygons, UseOfNames::Calls));
+    }
+
+    /// Puts all lists of elements and all results of queries in one order, which is the same on every structure: that of
+    /// the numbers of the vertices and faces in `polygons`, from which the structure was built, and of the numbers of the
+    /// two ends of an edge. The corners and the sides of a face begin at the corner with the least number. New elements
+    /// get the next numbers. Queries then allocate memory, and steps along sides keep their order.
+    pub fn start_canonical_order(&mut self, polygons: &PolygonMesh) {
+        self.tape = Some(Tape::new::<M>(polygons, UseOfNames::CanonicalOrder));
     }
 
     /// Returns the calls since [`start_trace`](Self::start_trace) as the trace of `program`.
@@ -125,6 +164,7 @@ macro_rules! counted {
         $(fn $method(&self, of: Self::$from) -> impl Iterator<Item = Self::$item> {
             let relation = Relation::$relation;
             let results = self.asks(relation).$method(of);
+            let results = counted!(order $item $relation self, results, of);
             let name = counted!(name $name self, of);
             let call = move |tape: &mut TapeState<_, _>| {
                 let name = name(tape);
@@ -133,6 +173,21 @@ macro_rules! counted {
             Watched::results(results, self.tape.as_ref(), call)
                 .noting(counted!(note $result relation))
         })+
+    };
+    (order Vertex FaceVertices $mesh:ident, $results:ident, $f:ident) => {
+        $mesh.starting_at_least_corner($results, $f)
+    };
+    (order Edge FaceEdges $mesh:ident, $results:ident, $f:ident) => {
+        $mesh.starting_at_least_corner($results, $f)
+    };
+    (order Vertex $relation:ident $mesh:ident, $results:ident, $of:ident) => {
+        $mesh.in_order($results, |tape, v| tape.vertex_name(v))
+    };
+    (order Edge $relation:ident $mesh:ident, $results:ident, $of:ident) => {
+        $mesh.in_order($results, |tape, e| tape.edge_name($mesh.mesh.edge_vertices(e)))
+    };
+    (order Face $relation:ident $mesh:ident, $results:ident, $of:ident) => {
+        $mesh.in_order($results, |tape, f| tape.face_name(f))
     };
     (name vertex $mesh:ident, $of:ident) => {
         |tape: &mut TapeState<M::Vertex, M::Face>| tape.vertex_name($of)
@@ -162,12 +217,14 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
 
     fn vertices(&self) -> impl Iterator<Item = M::Vertex> {
         let vertices = self.mesh.vertices();
+        let vertices = self.in_order(vertices, |tape, v| tape.vertex_name(v));
         Watched::list(vertices, self.tape.as_ref(), ElementKind::Vertex)
             .noting(|tape, &v| tape.item(tape.vertex_name(v)))
     }
 
     fn edges(&self) -> impl Iterator<Item = M::Edge> {
         let edges = self.mesh.edges();
+        let edges = self.in_order(edges, |tape, e| tape.edge_name(self.mesh.edge_vertices(e)));
         Watched::list(edges, self.tape.as_ref(), ElementKind::Edge).noting(|tape, &e| {
             let name = tape.edge_name(self.mesh.edge_vertices(e));
             tape.item(name);
@@ -176,6 +233,7 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
 
     fn faces(&self) -> impl Iterator<Item = M::Face> {
         let faces = self.mesh.faces();
+        let faces = self.in_order(faces, |tape, f| tape.face_name(f));
         Watched::list(faces, self.tape.as_ref(), ElementKind::Face)
             .noting(|tape, &f| tape.item(tape.face_name(f)))
     }
@@ -213,9 +271,13 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
 
     fn edge_vertices(&self, e: M::Edge) -> [M::Vertex; 2] {
         let relation = Relation::EdgeVertices;
-        let ends = self.asks(relation).edge_vertices(e);
+        let mut ends = self.asks(relation).edge_vertices(e);
         if let Some(tape) = &self.tape {
+            let is_canonical = tape.is_canonical();
             let mut tape = tape.lock();
+            if is_canonical {
+                ends.sort_by_key(|&v| tape.vertex_name(v));
+            }
             let name = tape.edge_name(ends);
             tape.query(relation, name);
             for v in ends {
@@ -455,7 +517,10 @@ impl<M: MeshEdit> MeshEdit for Recorded<M> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{EditRecord, EditableHalfEdgeMesh, HalfEdgeMesh, shapes};
+    use sixfold::{
+        CornerTable, EditRecord, EditableHalfEdgeMesh, FaceVertexMesh, HalfEdgeMesh,
+        WingedEdgeMesh, shapes,
+    };
 
     use super::*;
 
@@ -539,6 +604,66 @@ mod tests {
         assert_eq!(counts(&asked), expected);
         assert_eq!(mesh.memory(), mesh.mesh.memory());
         assert!(mesh.validate().is_ok());
+    }
+
+    /// What a mesh yields, by names: lists, results of all relations, and the ends of edges.
+    fn answers<M: Representation>(polygons: &PolygonMesh) -> Vec<Vec<[u32; 2]>> {
+        let mut mesh = Recorded::<M>::from_polygons(polygons).expect("a torus");
+        mesh.start_canonical_order(polygons);
+        let numbers = sixfold_core::ElementNames::new::<M>(polygons);
+        let vertex = |v| [numbers.vertex_number(v).expect("named"), 0];
+        let face = |f| [numbers.face_number(f).expect("named"), 0];
+        let edge = |e| {
+            let ends = mesh.mesh.edge_vertices(e);
+            numbers.edge_numbers(ends).expect("named")
+        };
+        let mut all = vec![
+            mesh.vertices().map(vertex).collect(),
+            mesh.edges().map(edge).collect(),
+            mesh.faces().map(face).collect(),
+        ];
+        for v in mesh.vertices() {
+            all.push(mesh.vertex_vertices(v).map(vertex).collect());
+            all.push(mesh.vertex_edges(v).map(edge).collect());
+            all.push(mesh.vertex_faces(v).map(face).collect());
+        }
+        for e in mesh.edges() {
+            all.push(mesh.edge_vertices(e).map(vertex).into());
+            all.push(mesh.edge_edges(e).map(edge).collect());
+            all.push(mesh.edge_faces(e).map(face).collect());
+        }
+        for f in mesh.faces() {
+            all.push(mesh.face_vertices(f).map(vertex).collect());
+            all.push(mesh.face_edges(f).map(edge).collect());
+            all.push(mesh.face_faces(f).map(face).collect());
+        }
+        all
+    }
+
+    #[test]
+    fn the_canonical_order_is_the_same_on_every_structure() {
+        let torus = shapes::triangle_torus(7, 5).expect("a torus");
+        let torus = shapes::shuffled(&torus, 3);
+        let expected = answers::<HalfEdgeMesh>(&torus);
+        assert!(expected[0].is_sorted() && expected[1].is_sorted() && expected[2].is_sorted());
+        assert_eq!(answers::<FaceVertexMesh>(&torus), expected);
+        assert_eq!(answers::<WingedEdgeMesh>(&torus), expected);
+        assert_eq!(answers::<CornerTable>(&torus), expected);
+        let mut mesh = Recorded::<HalfEdgeMesh>::from_polygons(&torus).expect("a torus");
+        mesh.start_canonical_order(&torus);
+        for f in mesh.faces() {
+            let corners: Vec<_> = mesh.face_vertices(f).collect();
+            let next = |i: usize| corners[(i + 1) % corners.len()];
+            for (i, e) in mesh.face_edges(f).enumerate() {
+                let mut ends = mesh.edge_vertices(e);
+                let mut side = [corners[i], next(i)];
+                ends.sort_unstable();
+                side.sort_unstable();
+                assert_eq!(ends, side, "a side begins at its corner");
+            }
+        }
+        let calls = mesh.take_tape("order").expect("no calls");
+        assert!(calls.trace.is_empty(), "calls are not kept");
     }
 
     #[test]

@@ -235,6 +235,26 @@ where
     }
 }
 
+/// Runs the program once on a structure whose lists and results are in one order, see
+/// [`start_canonical_order`](Recorded::start_canonical_order), or in its own order.
+pub(super) fn run_once<F, M>(
+    program: &F::Program,
+    polygons: &PolygonMesh,
+    canonical: bool,
+) -> Result<Outcome, ProgramRefusal>
+where
+    F: Form<Mesh = Recorded<M>>,
+    M: Representation,
+{
+    let mut mesh = F::Mesh::from_polygons(polygons)?;
+    if canonical {
+        mesh.start_canonical_order(polygons);
+    }
+    let mut scratch = set_up::<F>(program, &mesh, polygons)?;
+    let run = AssertUnwindSafe(|| F::run(program, &mut mesh, &mut scratch));
+    catch_unwind(run).map_err(|panic| ProgramRefusal::Panicked(message(panic.as_ref())))
+}
+
 /// Runs `trace` once on a structure that counts what it asks.
 ///
 /// # Errors

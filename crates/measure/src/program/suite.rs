@@ -10,10 +10,10 @@ use sixfold::{
 use super::forms::{Edits, Form, Moves, Queries, Refinements, Walks};
 use super::on_tables::{MadeFrom, OnTables};
 use super::recorded::{Asked, Recorded};
-use super::subject::{ProgramRefusal, RecordedRun, Subject, record};
+use super::subject::{ProgramRefusal, RecordedRun, Subject, record, run_once};
 use super::tape::TapedRun;
 use super::{EditProgram, MovingProgram, Program, RefineProgram, WalkProgram};
-use crate::job::TimedBackend;
+use crate::job::{Outcome, TimedBackend};
 use crate::tables::{TABLE_TYPE, TABLES};
 use crate::trace::{EditReplay, PlainReplay, Trace};
 
@@ -59,6 +59,8 @@ pub struct Contestant {
     record: Option<Box<Record>>,
     /// Prepares the trace of a recorded run, to run it on the structure.
     replay: Option<Box<Replay>>,
+    /// Runs the program once, in one order if the argument is true.
+    run_once: Option<Box<RunOnce>>,
 }
 
 /// Builds the structure and the scratch data of the program.
@@ -68,6 +70,9 @@ type Prepare =
 /// Builds the structure, and looks up the elements that the trace names.
 type Replay =
     dyn for<'p> Fn(&Trace, &'p PolygonMesh) -> Result<Box<dyn TimedBackend + 'p>, ProgramRefusal>;
+
+/// Runs the program once, in one order of elements if the last argument is true.
+type RunOnce = dyn Fn(&PolygonMesh, bool) -> Result<Outcome, ProgramRefusal>;
 
 /// Runs the program once on the recorded structure.
 type Record = dyn Fn(&PolygonMesh, bool) -> Result<RecordedRun, ProgramRefusal>;
@@ -292,6 +297,7 @@ impl Contestant {
             }),
             record: None,
             replay: None,
+            run_once: None,
         }
     }
 
@@ -312,6 +318,7 @@ impl Contestant {
             }),
             record: None,
             replay: None,
+            run_once: None,
         }
     }
 
@@ -326,10 +333,14 @@ impl Contestant {
         if const { !QueryCost::are_local(&M::COSTS) } {
             return self;
         }
-        let (name, program) = (name.to_owned(), Arc::clone(program));
+        let (name, again) = (name.to_owned(), Arc::clone(program));
+        let program = Arc::clone(program);
         Self {
             record: Some(Box::new(move |polygons, traced| {
                 record::<F, M>(&program, &name, polygons, traced)
+            })),
+            run_once: Some(Box::new(move |polygons, canonical| {
+                run_once::<F, M>(&again, polygons, canonical)
             })),
             ..self
         }
@@ -347,6 +358,21 @@ impl Contestant {
             })),
             ..self
         }
+    }
+
+    /// Runs the program once, without timing. If `canonical`, all lists of elements and all results of queries are in one
+    /// order, which is the same on every structure, see [`Recorded::start_canonical_order`]. Returns `None` if queries of
+    /// the structure scan the mesh, or if the kind of program cannot be recorded.
+    ///
+    /// # Errors
+    ///
+    /// Returns the same errors as [`prepare`](Self::prepare).
+    pub fn run_once(
+        &self,
+        polygons: &PolygonMesh,
+        canonical: bool,
+    ) -> Option<Result<Outcome, ProgramRefusal>> {
+        Some(self.run_once.as_ref()?(polygons, canonical))
     }
 
     /// Prepares the trace of a recorded run of the program, to run it on the structure. Returns `None` if the kind of
@@ -426,7 +452,6 @@ mod tests {
     use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, MeshQuery, Point, Split, shapes};
 
     use super::*;
-    use crate::job::Outcome;
 
     /// Implements each kind of program with the same methods.
     macro_rules! programs {

@@ -17,7 +17,19 @@ const MAX_CALLS: usize = 1 << 24;
 const MAX_RECENT: usize = 16;
 
 /// The calls of a program, with the names of the elements. Copies share one tape.
-pub(super) struct Tape<V: Handle, F: Handle>(Arc<Mutex<TapeState<V, F>>>);
+pub(super) struct Tape<V: Handle, F: Handle> {
+    state: Arc<Mutex<TapeState<V, F>>>,
+    use_of_names: UseOfNames,
+}
+
+/// What the names of the elements are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum UseOfNames {
+    /// The calls are kept.
+    Calls,
+    /// All lists and results are in the order of the names; calls are not kept.
+    CanonicalOrder,
+}
 
 pub(super) struct TapeState<V: Handle, F: Handle> {
     pub(super) names: ElementNames<V, F>,
@@ -35,11 +47,15 @@ pub(super) struct TapeState<V: Handle, F: Handle> {
     of_results: Vec<usize>,
     vertices: usize,
     faces: usize,
+    keeps_calls: bool,
 }
 
 impl<V: Handle, F: Handle> Clone for Tape<V, F> {
     fn clone(&self) -> Self {
-        Self(Arc::clone(&self.0))
+        Self {
+            state: Arc::clone(&self.state),
+            ..*self
+        }
     }
 }
 
@@ -65,11 +81,11 @@ pub struct TapedRun {
 }
 
 impl<V: Handle, F: Handle> Tape<V, F> {
-    pub(super) fn new<M>(polygons: &PolygonMesh) -> Self
+    pub(super) fn new<M>(polygons: &PolygonMesh, use_of_names: UseOfNames) -> Self
     where
         M: Representation<Vertex = V, Face = F>,
     {
-        Self(Arc::new(Mutex::new(TapeState {
+        let state = TapeState {
             names: ElementNames::new::<M>(polygons),
             calls: Vec::new(),
             edits: Vec::new(),
@@ -80,11 +96,21 @@ impl<V: Handle, F: Handle> Tape<V, F> {
             of_results: Vec::new(),
             vertices: polygons.vertex_count(),
             faces: polygons.face_count(),
-        })))
+            keeps_calls: use_of_names == UseOfNames::Calls,
+        };
+        Self {
+            state: Arc::new(Mutex::new(state)),
+            use_of_names,
+        }
+    }
+
+    /// Returns whether all lists and results are in the order of the names.
+    pub(super) fn is_canonical(&self) -> bool {
+        self.use_of_names == UseOfNames::CanonicalOrder
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, TapeState<V, F>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes the calls since the tape was made or last taken, of which there were `asked`; `None` if there were too many.
@@ -106,6 +132,9 @@ impl<V: Handle, F: Handle> Tape<V, F> {
 
 impl<V: Handle, F: Handle> TapeState<V, F> {
     fn push(&mut self, op: Op, name: [u32; 2]) -> usize {
+        if !self.keeps_calls {
+            return usize::MAX;
+        }
         match self.calls.len() < MAX_CALLS {
             true => self.calls.push(Call {
                 op,
@@ -158,7 +187,9 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
             && vertices.contains(&v)
         {
             self.positions_of[*relation as usize] += 1;
-            self.of_results.push(self.calls.len());
+            if self.keeps_calls {
+                self.of_results.push(self.calls.len());
+            }
         }
         let name = self.vertex_name(v);
         self.push(Op::Position, name);
@@ -170,7 +201,28 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
 
     pub(super) fn edit(&mut self, edit: TracedEdit) {
         self.push(Op::Edit, [self.edits.len() as u32, 0]);
-        self.edits.push(edit);
+        if self.keeps_calls {
+            self.edits.push(edit);
+        }
+    }
+}
+
+/// The results of a query, in the order of the structure or in another one.
+pub(super) enum Ordered<I: Iterator> {
+    /// As the structure yields them.
+    Own(I),
+    /// In another order.
+    Other(std::vec::IntoIter<I::Item>),
+}
+
+impl<I: Iterator> Iterator for Ordered<I> {
+    type Item = I::Item;
+
+    fn next(&mut self) -> Option<I::Item> {
+        match self {
+            Self::Own(items) => items.next(),
+            Self::Other(items) => items.next(),
+        }
     }
 }
 
