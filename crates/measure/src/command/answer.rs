@@ -19,6 +19,7 @@ pub fn print(report: &PickReport, text: &mut TextOutput) {
         text.print_line(&results(report));
         text.print_line("");
     }
+    text.print_list("- ", same_result(report));
     text.print_list("- ", reasons);
     let excluded = report.excluded.iter();
     let excluded = excluded.map(|e| format!("{} is excluded: {}.", e.backend, e.reason));
@@ -29,6 +30,19 @@ pub fn print(report: &PickReport, text: &mut TextOutput) {
             text.print_line(&format!("  {line}"));
         }
     }
+}
+
+/// Says which result of a program all structures have; `None` if results differ.
+fn same_result(report: &PickReport) -> Option<String> {
+    let results: Vec<f64> = report.ranking.iter().filter_map(|r| r.result).collect();
+    let (first, others) = results.split_first()?;
+    let agree = report.program.is_some() && report.mismatches.is_empty() && !others.is_empty();
+    agree.then(|| {
+        format!(
+            "All {} results agree, up to rounding: {first:?}.",
+            results.len()
+        )
+    })
 }
 
 /// Returns the table of the results of a program that differ, each with the part by which it differs from the result

@@ -13,65 +13,81 @@ use sixfold_results::{Confidence, Policy};
 use crate::command::failure::Failure;
 use crate::command::launches;
 use crate::command::mesh_files::ReadFiles;
+use crate::command::text::hanging_indent;
 use crate::engine::effort::Effort;
 
 /// The help text without the names of the programs.
 const HELP: &str = "\
 Measures programs on every mesh data structure, and ranks the structures.
 
-Each program runs on each structure that can hold the mesh. The structures take turns in rounds.
-The output names the fastest structure, and shows confidence intervals, the memory, and the
-number of runs after which the time to build the structure is saved.
+Each program runs on each structure that can hold the mesh. The structures take
+turns in rounds. The output names the fastest structure, and shows confidence
+intervals, the memory, and the number of runs after which the time to build the
+structure is saved.
 
 Usage: PROGRAM [OPTIONS] [MESH|DIR]...
 
 Arguments:
-  [MESH|DIR]...  Meshes, or folders with meshes; without any, a built-in mesh of 20,000 triangles
+  [MESH|DIR]...  Meshes, or folders with meshes; without any, a built-in mesh of
+                 20,000 triangles
 
 Options:
   --programs NAME,…     Measure only these programs, by name
   --backends NAME,…     Use only these structures, by name
-  --runs N              Number of runs of a program on one mesh, to weigh the time to build a structure
-                        [default: 1]
+  --runs N              Number of runs of a program on one mesh, to weigh the
+                        time to build a structure [default: 1]
   --max-memory BYTES    Memory limit for the structure, such as 2GiB or 500MB
-  --budget TIME         Total time to measure, such as 20s, 500ms or 2m [default: 20s]
-  --rounds N            Measure exactly N rounds of everything, without a time limit
+  --budget TIME         Total time to measure, such as 20s, 500ms or 2m
+                        [default: 20s]
+  --rounds N            Measure exactly N rounds, without a time limit
   --launches N          Measure in N fresh processes [default: by the budget]
-  --confidence LEVEL    Confidence of all intervals, such as 99% or 0.99 [default: 95%]
-  --keep-going          Exit code 0 also if a part cannot be measured; a note names it
-  --seed N              Seed of the random order of the measurements [default: 1]
-  --heap POLICY         Freed memory: kept (by the process) or system [default: kept]
-  --isolate             Run each structure in a process of its own: if the program crashes, does not end or
-                        uses too much memory on one structure, the others are still measured; one launch
-  --time-limit TIME     Time limit for each sample [default with --isolate: a quarter of the budget;
-                        otherwise the command ends after three times the budget and 30 s]
-  --memory-limit BYTES  Memory limit for the process, with --isolate for each process, such as 4GiB
-                        [default: nine tenths of the free memory]
-  --record DIR          Write all calls of each program to DIR/PROGRAM.trace, for `sixfold pick --trace` and
-                        `sixfold workloads --trace`
-  --order canonical     Run each program once on each structure, in the structure's own order and in one order of all
-                        elements and results, and compare the results; nothing is measured
-  --json FILE           Write all results as JSON (- for standard output), for `sixfold report`, `compare`,
-                        `merge` and `history`
+  --confidence LEVEL    Confidence of all intervals, such as 99% or 0.99
+                        [default: 95%]
+  --keep-going          Exit code 0 also if a part cannot be measured; a note
+                        names it
+  --seed N              Seed of the random order of the measurements
+                        [default: 1]
+  --heap POLICY         Freed memory: kept (by the process) or system
+                        [default: kept]
+  --isolate             Run each structure in a process of its own: if the
+                        program crashes, does not end or uses too much memory on
+                        one structure, the others are still measured. One launch
+  --time-limit TIME     Time limit for each sample [default, if each structure
+                        has its own process: a quarter of the budget; otherwise
+                        the command ends after three times the budget and 30 s]
+  --memory-limit BYTES  Memory limit for each process, such as 4GiB [default:
+                        nine tenths of the free memory]
+  --record DIR          Write all calls of each program to DIR/PROGRAM.trace,
+                        for `sixfold pick --trace` and `sixfold workloads
+                        --trace`, and no other file
+  --order canonical     Run each program once on each structure, in the
+                        structure's own order and in one order of all elements
+                        and results, and compare the results; measures nothing
+  --json FILE           Write all results as JSON (- for standard output), for
+                        `sixfold report`, `compare`, `merge` and `history`
   --tag KEY=VALUE       Keep KEY=VALUE in the results; may be repeated
   --triangulate         First cut every polygon into triangles
-  --as-stored           Do not merge vertices at equal positions: neither those of STL files nor those at seams
-  --recentre            Move meshes to the origin before coordinates are rounded to 32 bits
-  --scene N|all         Scene of glTF files to read: its number, or all for every node and mesh
-                        [default: the default scene of the file]
+  --as-stored           Do not merge vertices at equal positions: neither those
+                        of STL files nor those at seams
+  --recentre            Move meshes to the origin before coordinates are rounded
+                        to 32 bits
+  --scene N|all         Scene of glTF files to read: its number, or all for
+                        every node and mesh [default: the file's default scene]
   -h, --help            Print help
   -V, --version         Print version
 ";
 
 /// What follows the help of the options, after the names of the programs.
 const AFTER: &str = "\
-Launches: Fresh processes of this command measure one after the other, each all programs. What
-they print is not shown. If a program does not end or uses too much memory, its launch is the last
-one. If a program crashes, its launch is left out.
+Launches: Fresh processes of this command measure one after the other, each all
+programs. What they print is not shown. If a program does not end or uses too
+much memory, its launch is the last one. If a program crashes, its launch is
+left out.
 
-Exit codes: 0 success; 1 no structure qualifies for a program, results differ between structures,
-a launch is left out, or a mesh of several cannot be read; 2 wrong usage or unusable input, or all
-launches are left out; 4 interrupted, or a program did not end; finished results are kept.
+Exit codes: 0 success; 1 no structure qualifies for a program, results differ
+between structures, a launch is left out, or a mesh of several cannot be read;
+2 wrong usage or unusable input, or all launches are left out; 4 interrupted, or
+a program did not end; finished results are kept.
 ";
 
 /// The default budget.
@@ -117,7 +133,8 @@ pub enum Asked {
 
 /// Returns the help of a command line with these programs.
 pub fn help(names: &[&str]) -> String {
-    format!("{HELP}\nPrograms: {}\n\n{AFTER}", names.join(", "))
+    let names = hanging_indent("Programs: ", &names.join(", "));
+    format!("{HELP}\n{names}\n\n{AFTER}")
 }
 
 /// Parses the words after the name of the command.
@@ -258,9 +275,11 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Failure
 
 /// Returns the error for an option that does not exist. It names the option that was perhaps meant.
 fn unknown(name: &str) -> Failure {
-    let words = HELP.split_whitespace();
-    let known = words.filter_map(|word| word.trim_end_matches(',').strip_prefix("--"));
-    let known = known.filter(|known| known.chars().all(|c| c.is_ascii_lowercase() || c == '-'));
+    let lines = HELP
+        .lines()
+        .filter_map(|line| line.trim_start().split_once("--"));
+    let lines = lines.filter(|(before, _)| before.is_empty() || before.ends_with(", "));
+    let known = lines.filter_map(|(_, option)| option.split_whitespace().next());
     Failure::usage(sixfold::UnknownName::new("option", name, known))
 }
 
@@ -433,6 +452,19 @@ mod tests {
             let message = given(words).expect_err(expected);
             assert!(message.contains(expected), "{words:?}: {message}");
         }
+    }
+
+    #[test]
+    fn the_help_has_80_columns_and_each_option_once() {
+        let text = help(&["a", "b"]);
+        let wide = text.lines().find(|line| line.chars().count() > 80);
+        assert_eq!(wide, None);
+        let message = unknown("x").message;
+        assert_eq!(message.matches("isolate").count(), 1, "{message}");
+        assert!(
+            message.contains("choose from programs, backends, runs"),
+            "{message}"
+        );
     }
 
     #[test]

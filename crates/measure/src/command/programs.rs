@@ -23,7 +23,7 @@ use crate::command::output::{Output, check_outputs, exit_without_drafts, is_stdo
 use crate::command::progress::{INTERRUPTED, Line, interrupt_flag};
 use crate::command::run::{warn_of_debug_build, with_command};
 use crate::command::text::{
-    TextOutput, hanging_indent, print_notice, print_stderr, reflow, sanitize, take_notices, width,
+    TextOutput, hanging_indent, print_notice, print_stderr, sanitize, take_notices,
 };
 use crate::command::{answer, order, record};
 use crate::launches::pool_programs;
@@ -54,7 +54,7 @@ pub fn run(suite: Suite) -> Result<ExitCode, Failure> {
     let names: Vec<&str> = suite.programs().iter().map(SuiteProgram::name).collect();
     let arguments = match arguments::parse(std::env::args_os().skip(1))? {
         Asked::Measure(arguments) => *arguments,
-        Asked::Help => return print(&reflow(&arguments::help(&names), width())),
+        Asked::Help => return print(&arguments::help(&names)),
         Asked::Version => return print(concat!("sixfold-measure ", env!("CARGO_PKG_VERSION"))),
     };
     let known = names.iter().copied();
@@ -439,8 +439,8 @@ fn exit_code(
     let differing = results.mismatches();
     if differing > 0 {
         print_stderr(&format!(
-            "error: {} from the results of other backends for the same work. The result of a program must not depend on \
-             the order in which a query lists the neighbours",
+            "error: {} from the results of other backends for the same work: see the likely reasons above. The result of a \
+             program must not depend on the order in which a query lists the neighbours",
             counted(differing, "result differs", "results differ")
         ));
     }

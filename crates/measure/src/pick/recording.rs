@@ -8,7 +8,7 @@ use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
 use crate::pages::HeapPolicyConflict;
-use crate::pick::programs::{ProgramSettings, is_local};
+use crate::pick::programs::ProgramSettings;
 use crate::pick::tasks::program_entry;
 use crate::study_mesh::StudyMesh;
 use crate::trace::Measured;
@@ -54,7 +54,7 @@ pub struct RecordedProgram {
 }
 
 /// Measures `program` on each structure that holds the mesh and does not scan it. Then records what it
-/// asks on the fastest of these structures.
+/// asks on the fastest of these structures. A program that edits is recorded on the face-vertex mesh.
 ///
 /// Then measures the program and its trace in rounds, for the rest of the budget of `settings`. The time of the
 /// program minus the time of its trace is the program's own time, which is added to all times of the trace. It is 0 if
@@ -105,8 +105,8 @@ pub fn record_program_on(
     };
     let (mut contestants, mut subjects) = (Vec::new(), Vec::new());
     let structures = program.contestants().iter();
-    let structures = structures.filter(|c| c.made_from().is_none());
-    for contestant in structures.filter(|c| settings.chooses(c) && is_local(c)) {
+    let structures = structures.filter(|c| c.can_run_again());
+    for contestant in structures.filter(|c| settings.chooses(c)) {
         match contestant.prepare(polygons) {
             Ok(built) => {
                 contestants.push(contestant);
@@ -144,7 +144,7 @@ pub fn record_program_on(
     );
     let fastest = runs.min_by(|(.., a), (.., b)| a.total_cmp(b));
     let Some((contestant, subject, _)) = fastest else {
-        let none = || "no structure is left".to_owned();
+        let none = || "choose face-vertex with --backends, or all structures".to_owned();
         return Err(refused(first_reason.unwrap_or_else(none)));
     };
     match contestant.record_calls(polygons) {

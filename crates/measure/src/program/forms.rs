@@ -15,6 +15,8 @@ pub trait Form {
     type Mesh: Representation;
     /// The scratch data.
     type Scratch;
+    /// Whether a run can edit the mesh.
+    const EDITS: bool = false;
 
     /// Returns whether a run changes the mesh, so that each run needs a fresh copy. O(1).
     fn changes_mesh(scratch: &Self::Scratch) -> bool;

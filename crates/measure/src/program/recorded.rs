@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::tape::{Ordered, Tape, TapeState, TapedRun, UseOfNames, Watched};
+use super::tape::{Ordered, Tape, TapeState, TapedRun, UseOfNames, Watched, order_of};
 use sixfold_results::AskedCount;
 
 use crate::operation::ElementKind;
@@ -115,10 +115,16 @@ impl<M: MeshQuery> Recorded<M> {
         let Some(tape) = self.tape.as_ref().filter(|tape| tape.is_canonical()) else {
             return Ordered::Own(items);
         };
-        let mut items: Vec<I::Item> = items.collect();
+        let items: Vec<I::Item> = items.collect();
         let state = tape.lock();
-        items.sort_by_cached_key(|&item| key(&state, item));
-        Ordered::Other(items.into_iter())
+        let keys = items.iter().map(|&item| key(&state, item)).collect();
+        let order = order_of(keys).into_iter();
+        Ordered::Other(
+            order
+                .map(|place| items[place])
+                .collect::<Vec<_>>()
+                .into_iter(),
+        )
     }
 
     /// Returns the corners or the sides of a face from the corner with the least number, if the tape asks for it.
@@ -276,7 +282,10 @@ impl<M: MeshQuery> MeshQuery for Recorded<M> {
             let is_canonical = tape.is_canonical();
             let mut tape = tape.lock();
             if is_canonical {
-                ends.sort_by_key(|&v| tape.vertex_name(v));
+                let [first, second] = ends.map(|v| tape.vertex_name(v));
+                if first > second {
+                    ends.reverse();
+                }
             }
             let name = tape.edge_name(ends);
             tape.query(relation, name);

@@ -207,6 +207,13 @@ impl<V: Handle, F: Handle> TapeState<V, F> {
     }
 }
 
+/// Returns the places of `keys` in ascending order. It is not generic, so that it is compiled once.
+pub(super) fn order_of(keys: Vec<[u32; 2]>) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..keys.len()).collect();
+    places.sort_by_key(|&place| keys[place]);
+    places
+}
+
 /// The results of a query, in the order of the structure or in another one.
 pub(super) enum Ordered<I: Iterator> {
     /// As the structure yields them.

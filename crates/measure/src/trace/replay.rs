@@ -483,6 +483,8 @@ impl<M: Representation> Form for PlainReplay<M> {
 pub struct EditReplay<M>(PhantomData<M>);
 
 impl<M: Representation + MeshEdit> Form for EditReplay<M> {
+    const EDITS: bool = true;
+
     type Program = Trace;
     type Mesh = M;
     type Scratch = Replay<M>;
