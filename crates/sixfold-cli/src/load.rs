@@ -10,7 +10,7 @@ use sixfold::{Creases, FaceId, PolygonMesh};
 use sixfold_results::Results;
 use sixfold_study::StudyMesh;
 
-pub(crate) use sixfold_measure::command::load::{built_in, file_hash};
+pub(crate) use sixfold_measure::command::load::file_hash;
 use sixfold_measure::command::load::{into_study_mesh, print_left_out};
 
 use crate::arguments::{ReadFiles, ReadPolygons};
@@ -294,8 +294,5 @@ pub(crate) fn mesh_or_built_in(
     strict: bool,
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
-    match path {
-        Some(path) => for_study(path, files, strict, triangulate),
-        None => Ok(built_in()),
-    }
+    sixfold_measure::command::load::mesh_or_built_in(path, files.into(), strict, triangulate)
 }

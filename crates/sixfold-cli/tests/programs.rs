@@ -101,6 +101,18 @@ fn bad_arguments_and_meshes_are_refused() {
         assert_eq!(run.code, Some(2), "{arguments:?}: {run:?}");
         assert!(run.stderr.contains(message), "{arguments:?}: {run:?}");
     }
+    let one_structure = ["--order", "canonical", "tetrahedron.obj", "--backends"];
+    for (backend, code, message) in [
+        ("half-edges", 2, "half-edges"),
+        ("half-edge", 0, "nothing to compare"),
+    ] {
+        let run = sixfold.run_programs(&[&one_structure[..], &[backend]].concat());
+        assert_eq!(run.code, Some(code), "{run:?}");
+        assert!((run.stdout + &run.stderr).contains(message), "{message}");
+    }
+    let piped = sixfold.run_programs(&["-", "--isolate"]);
+    assert_eq!(piped.code, Some(2), "{piped:?}");
+    assert!(piped.stderr.contains("save it to a file"), "{piped:?}");
     let help = sixfold.run_programs(&["--help"]);
     assert_eq!(help.code, Some(0));
     assert!(help.stdout.contains("scattered-normals"), "{help:?}");

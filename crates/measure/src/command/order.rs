@@ -1,6 +1,9 @@
 //! Runs programs in one order of elements, to find out why their results differ between structures.
 
+use std::collections::BTreeSet;
 use std::process::ExitCode;
+
+use sixfold::UnknownName;
 
 use crate::command::arguments::Arguments;
 use crate::command::column_table::{Column, column_table};
@@ -18,6 +21,9 @@ const DIFFERENT: u8 = 1;
 /// Runs each program of `suite` once on each structure, in the structure's own order and in one order, and prints the
 /// results.
 pub(super) fn run(suite: &Suite, arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let contestants = suite.programs().iter().flat_map(SuiteProgram::contestants);
+    let known: BTreeSet<&str> = contestants.map(Contestant::name).collect();
+    UnknownName::check("backend", &arguments.backends, known).map_err(Failure::usage)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let (study_meshes, failed) = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let mut text = TextOutput::new(true);
@@ -87,6 +93,10 @@ fn print_program(
                 [format!("{name}: {}.", sanitize(&reason.to_string()))],
             );
         }
+    }
+    if runs.len() < 2 {
+        text.print_list("- ", ["There is nothing to compare: only structures whose queries do not scan run in one order."]);
+        return true;
     }
     let agree = [0, 1].map(|order| {
         let found = runs

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::num::NonZeroU32;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -18,6 +18,7 @@ use crate::command::failure::Failure;
 use crate::command::free_memory::used_memory;
 use crate::command::launches::{self, Launch, Launching, Work};
 use crate::command::load::{mesh_or_built_in, study_meshes};
+use crate::command::mesh_files::shown;
 use crate::command::meshes::{find_mesh, find_meshes};
 use crate::command::output::{Output, check_outputs, exit_without_drafts, is_stdout};
 use crate::command::progress::{INTERRUPTED, Line, interrupt_flag};
@@ -97,6 +98,15 @@ fn print(text: &str) -> Result<ExitCode, Failure> {
 
 /// Returns how child processes run the programs.
 fn isolation(arguments: &Arguments, memory_limit: Option<u64>) -> Result<Isolation, Failure> {
+    // Each child reads the mesh again.
+    let is_read_once =
+        |path: &&PathBuf| is_stdout(path) || (path.exists() && !path.is_file() && !path.is_dir());
+    if let Some(path) = arguments.meshes.iter().find(is_read_once) {
+        return Err(Failure::usage(format!(
+            "{}: --isolate reads the mesh once for each structure: save it to a file",
+            shown(path)
+        )));
+    }
     let executable = std::env::current_exe().map_err(|error| {
         Failure::usage(format!("--isolate: the executable is unknown: {error}"))
     })?;

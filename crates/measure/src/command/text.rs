@@ -20,7 +20,7 @@ const MAX_WIDTH: usize = 100;
 /// Minimum width of text. In a narrower terminal, the terminal breaks lines.
 const MIN_WIDTH: usize = 40;
 
-/// The widths of the terminals of standard output and of standard error; 0 if there is none, or if it is unknown.
+/// The widths of the terminals of standard output and of standard error, in columns. 0 stands for an unknown width.
 static TERMINALS: [AtomicUsize; 2] = [AtomicUsize::new(0), AtomicUsize::new(0)];
 
 /// Sets the widths of the terminals of standard output and of standard error, in columns.

@@ -134,3 +134,73 @@ pub(crate) fn workload_of_trace_on(
     recording.workload.own_ns = own_ns.max(0.0);
     Ok(recording)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use sixfold::{MeshQuery, Representation, shapes};
+    use sixfold_measure::{Effort, Measured, Recorded, Task};
+
+    use super::*;
+    use crate::engine::simulated_machine::{SimulatedMachine, Work};
+
+    /// Returns a mesh of 120 vertices, and the trace of a program that queries the neighbours of each.
+    fn traced() -> (StudyMesh, Trace) {
+        let torus = shapes::triangle_torus(12, 10).expect("a torus");
+        let mut mesh = Recorded::<FaceVertexMesh>::from_polygons(&torus).expect("held");
+        mesh.start_trace(&torus);
+        for v in mesh.vertices() {
+            mesh.vertex_vertices(v).count();
+        }
+        let trace = mesh.trace("neighbours").expect("few calls");
+        (StudyMesh::new("torus", torus), trace)
+    }
+
+    /// Returns the own time of the workload on a machine that is slower by `factor` than when the trace was recorded.
+    fn own_ns(factor: f64, trace: &Trace, study_mesh: &StudyMesh) -> f64 {
+        let machine = SimulatedMachine::with_costs(move |work: &Work<'_>| match work.task {
+            Task::Program => factor * 42_000.0,
+            Task::Mix => factor * 256.0 * 300.0,
+            _ => 1000.0,
+        });
+        let settings = ProgramSettings {
+            effort: Effort::Budget(Duration::from_millis(100)),
+            ..ProgramSettings::default()
+        };
+        let stop = AtomicBool::new(false);
+        let recording = workload_of_trace_on(&machine, study_mesh, trace, &settings, &stop);
+        recording.expect("it runs").workload.own_ns
+    }
+
+    #[test]
+    fn the_own_time_is_what_the_mix_does_not_take_at_the_speed_of_the_machine_now() {
+        let (study_mesh, mut trace) = traced();
+        trace.own_ns = 1200.0;
+        assert_eq!(
+            own_ns(1.0, &trace, &study_mesh),
+            10.0,
+            "nothing was measured"
+        );
+        let measured = |run_ns| Measured {
+            structure: "winged-edge".into(),
+            run_ns,
+            replay_ns: 42_000.0,
+        };
+        trace.measured = Some(measured(50_000.0));
+        // 120 vertices are queried in a run of 50 µs: 416.7 ns for each, of which a query takes 300.
+        for factor in [1.0, 2.0] {
+            let own_ns = own_ns(factor, &trace, &study_mesh) / factor;
+            assert!(
+                (own_ns - (50_000.0 / 120.0 - 300.0)).abs() < 1e-6,
+                "{own_ns}"
+            );
+        }
+        trace.measured = Some(measured(30_000.0));
+        assert_eq!(
+            own_ns(1.0, &trace, &study_mesh),
+            0.0,
+            "the mix takes longer"
+        );
+    }
+}
