@@ -46,9 +46,10 @@ METHODS = ["built-in workload", "recorded workload", "trace", "first answer, bui
 EQUAL = 1.05
 
 
+# The package that has the example is compiled for size, and its examples with it.
 AS_A_USER = [
-    "--config", "profile.release.package.sixfold-cli.opt-level=3",
-    "--config", "profile.release.package.sixfold-cli.codegen-units=16",
+    "--config", "profile.release.package.sixfold-measure.opt-level=3",
+    "--config", "profile.release.package.sixfold-measure.codegen-units=16",
 ]
 
 

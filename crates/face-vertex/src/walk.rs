@@ -80,6 +80,7 @@ impl<T> Index<FaceSide> for CornerMap<T> {
     type Output = T;
 
     #[inline]
+    #[track_caller]
     fn index(&self, side: FaceSide) -> &T {
         &self.0[side.corner]
     }
@@ -87,6 +88,7 @@ impl<T> Index<FaceSide> for CornerMap<T> {
 
 impl<T> IndexMut<FaceSide> for CornerMap<T> {
     #[inline]
+    #[track_caller]
     fn index_mut(&mut self, side: FaceSide) -> &mut T {
         &mut self.0[side.corner]
     }

@@ -15,19 +15,19 @@ fn main() -> ExitCode {
     let suite = Suite::new()
         .program(Faulty {
             name: "sound",
-            fault: || (),
+            fault: |_| (),
         })
         .program(Faulty {
             name: "endless",
-            fault: never_end,
+            fault: |_| never_end(),
         })
         .program(Faulty {
             name: "crashing",
-            fault: || std::process::abort(),
+            fault: |_| std::process::abort(),
         })
         .program(Faulty {
             name: "hoarding",
-            fault: || {
+            fault: |_| {
                 let mut hoard = Vec::new();
                 loop {
                     hoard.push(vec![1_u8; 1 << 20]);
@@ -37,15 +37,15 @@ fn main() -> ExitCode {
         })
         .program(Faulty {
             name: "panicking",
-            fault: || panic!("half-edges are not welcome"),
+            fault: |_| panic!("half-edges are not welcome"),
         })
         .program(Faulty {
             name: "chatting",
-            fault: || print!("half-edges!"),
+            fault: |_| print!("half-edges!"),
         })
         .program(Faulty {
             name: "endless-once",
-            fault: || {
+            fault: |_| {
                 if is_second_launch() {
                     never_end();
                 }
@@ -53,11 +53,23 @@ fn main() -> ExitCode {
         })
         .program(Faulty {
             name: "crashing-once",
-            fault: || {
+            fault: |_| {
                 if is_second_launch() {
                     std::process::abort();
                 }
             },
+        })
+        .program(Faulty {
+            name: "panicking-once",
+            fault: |_| assert!(!is_second_launch(), "once is enough"),
+        })
+        .program(Faulty {
+            name: "not-a-number",
+            fault: |outcome| outcome.checksum = f64::NAN,
+        })
+        .program(Faulty {
+            name: "skipping",
+            fault: |outcome| outcome.elements -= 1,
         })
         .program(FirstNeighbours);
     sixfold_measure::main(suite)
@@ -100,10 +112,10 @@ impl Program for FirstNeighbours {
     }
 }
 
-/// Adds up the lengths of all edges, after a fault on the half-edge structure.
+/// Adds up the lengths of all edges, with a fault on the half-edge structure.
 struct Faulty {
     name: &'static str,
-    fault: fn(),
+    fault: fn(&mut Outcome),
 }
 
 impl Program for Faulty {
@@ -118,13 +130,14 @@ impl Program for Faulty {
     }
 
     fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> Outcome {
-        if std::any::type_name::<M>().contains("HalfEdge") {
-            (self.fault)();
-        }
         let length = |e| {
             let [a, b] = mesh.edge_vertices(e).map(|v| mesh.position(v));
             f64::from(a.distance(b))
         };
-        Outcome::new(mesh.edges().map(length).sum(), mesh.edge_count() as u64)
+        let mut outcome = Outcome::new(mesh.edges().map(length).sum(), mesh.edge_count() as u64);
+        if std::any::type_name::<M>().contains("HalfEdge") {
+            (self.fault)(&mut outcome);
+        }
+        outcome
     }
 }

@@ -48,7 +48,8 @@
 //! # Effect on the process
 //!
 //! [`pick_for_programs`], [`record_program`] and [`serve_program`] change the settings of malloc for the whole process while
-//! they measure, see [`pages`](crate::pages#effect-on-the-process).
+//! they measure, see [`pages`](crate::pages#effect-on-the-process). They also set a panic hook, which does not print the panics of
+//! programs, because these are results. All other panics go to the hook that was set before.
 //!
 //! The documentation of a function that runs while the clock runs begins with **Timed**.
 

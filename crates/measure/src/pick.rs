@@ -2,6 +2,7 @@
 
 pub mod break_even;
 mod choice;
+pub mod kinds;
 mod launches;
 pub mod measurement;
 pub mod pooled;

@@ -16,6 +16,7 @@
 
 mod forms;
 mod on_tables;
+mod panics;
 mod recorded;
 mod subject;
 mod suite;
@@ -118,6 +119,45 @@ program_kind! {
     /// A program that edits a mesh.
     ///
     /// Each run gets a fresh copy of the mesh and of the scratch data. Copying is not timed.
+    ///
+    /// The result must be the same on every structure: see [Editing while iterating](MeshEdit#editing-while-iterating).
+    /// `sixfold new --edits` writes such a program. Handles in the scratch data are those at the start: an edit can rename
+    /// some, and on polygon soup, whose vertices are their positions, a vertex has another handle after it was moved. A map
+    /// that was made before then has no value of this vertex.
+    ///
+    /// ```
+    /// use sixfold::{MeshEdit, Point};
+    /// use sixfold_measure::{EditProgram, Outcome, Suite};
+    ///
+    /// /// Puts a vertex into the middle of every face.
+    /// struct PokeAll;
+    ///
+    /// impl EditProgram for PokeAll {
+    ///     type Scratch<M: MeshEdit> = ();
+    ///
+    ///     fn name(&self) -> &str {
+    ///         "poke-all"
+    ///     }
+    ///
+    ///     fn set_up<M: MeshEdit>(&self, _: &M) -> Result<(), String> {
+    ///         Ok(())
+    ///     }
+    ///
+    ///     fn run<M: MeshEdit>(&self, mesh: &mut M, (): &mut ()) -> Outcome {
+    ///         let faces: Vec<M::Face> = mesh.faces().collect();
+    ///         let mut refused = 0;
+    ///         for &f in &faces {
+    ///             let corners: Vec<_> = mesh.face_vertices(f).map(|v| mesh.position(v)).collect();
+    ///             let middle = corners.iter().sum::<Point>() / corners.len() as f32;
+    ///             refused += u64::from(mesh.poke_face(f, middle).is_err());
+    ///         }
+    ///         Outcome::new((mesh.face_count() as u64 + refused) as f64, faces.len() as u64)
+    ///     }
+    /// }
+    ///
+    /// let suite = Suite::new().edit_program(PokeAll);
+    /// # assert_eq!(suite.programs().len(), 1);
+    /// ```
     EditProgram, MeshEdit, &mut
 }
 

@@ -9,9 +9,8 @@ use crate::failure::Failure;
 use crate::text::TextOutput;
 
 /// The files of the package. `NAME` stands for its name, and `CHECKOUT` for the path of Sixfold.
-const FILES: [(&str, &str); 5] = [
+const FILES: [(&str, &str); 4] = [
     ("Cargo.toml", include_str!("../templates/new/manifest.toml")),
-    ("src/main.rs", include_str!("../templates/new/main.rs")),
     ("README.md", include_str!("../templates/new/README.md")),
     (
         ".cargo/config.toml",
@@ -19,6 +18,10 @@ const FILES: [(&str, &str); 5] = [
     ),
     (".gitignore", "/target\n"),
 ];
+
+/// The program of the package: one that queries the mesh, and one that edits it.
+const QUERIES: &str = include_str!("../templates/new/main.rs");
+const EDITS: &str = include_str!("../templates/new/edits.rs");
 
 pub(crate) fn run(arguments: &New) -> Result<ExitCode, Failure> {
     let folder = &arguments.folder;
@@ -38,7 +41,11 @@ pub(crate) fn run(arguments: &New) -> Result<ExitCode, Failure> {
             "{shown}: the folder is not empty: name a new folder"
         )));
     }
-    for (path, content) in FILES {
+    let program = match arguments.edits {
+        true => EDITS,
+        false => QUERIES,
+    };
+    for (path, content) in FILES.into_iter().chain([("src/main.rs", program)]) {
         let path = folder.join(path);
         let content = content.replace("NAME", name).replace("CHECKOUT", &checkout);
         let parent = path.parent().unwrap_or(folder);

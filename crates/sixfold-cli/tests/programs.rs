@@ -279,6 +279,9 @@ fn a_new_package_is_written_once() {
     let (path, _) = path.split_once('"').expect("a path");
     assert!(std::path::Path::new(path).join("Cargo.toml").is_file());
     assert!(text(&sixfold, "my-program/src/main.rs").contains("sixfold_measure::main"));
+    let run = sixfold.run(&["new", "editing", "--edits", "--checkout", checkout]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(text(&sixfold, "editing/src/main.rs").contains("impl EditProgram"));
     for (arguments, message) in [
         (
             &["new", "my-program", "--checkout", checkout][..],
@@ -341,13 +344,8 @@ fn different_results_are_shown_with_their_likely_reasons() {
     assert!(!wrong.is_empty(), "{finding}");
     let header = run.stdout.lines().find(|line| line.contains("differs by"));
     let header = header.unwrap_or_else(|| panic!("{}", run.stdout));
-    assert!(header.trim_start().starts_with("result"), "{header}");
+    assert!(header.trim_start().starts_with("same"), "{header}");
     let ranking = finding["ranking"].as_array().expect("a list");
-    let is_wrong = |row: &&Value| wrong.contains(&row["backend"]);
-    let reference = ranking
-        .iter()
-        .find(|row| !is_wrong(row))
-        .unwrap_or(&ranking[0]);
     for row in ranking {
         let name = row["backend"].as_str().expect("a name");
         let result = row["result"].as_f64().expect("a number");
@@ -355,13 +353,24 @@ fn different_results_are_shown_with_their_likely_reasons() {
         let line =
             lines.find(|line| line.starts_with(name) && line.contains(&format!("{result:?}")));
         let line = line.unwrap_or_else(|| panic!("{name} {result}: {}", run.stdout));
+        let mut cells = line.split_whitespace().skip(1);
+        let letter = cells.next().expect("a letter");
         // Only what differs has a third cell.
-        let cells = line.split_whitespace().count();
-        let differs = is_wrong(&row) && row["result"] != reference["result"];
-        assert_eq!(cells, if differs { 3 } else { 2 }, "{line}");
+        assert_eq!(cells.count(), if letter == "A" { 1 } else { 2 }, "{line}");
     }
+    assert!(
+        run.stdout
+            .contains("The results differ, so the times are not"),
+        "{run:?}"
+    );
+    assert!(!run.stdout.contains("clearly"), "{run:?}");
     let said = run.stdout.replace("\n  ", " ");
-    for reason in ["Likely reasons", "vertex_numbers", "refused edits", "`f64`"] {
+    for reason in [
+        "agrees with no other",
+        "Likely reasons",
+        "sorting them by their positions",
+        "(3) sums of `f32`",
+    ] {
         assert!(said.contains(reason), "{reason}: {said}");
     }
     // In one order of the neighbours, all structures find the same first one.
@@ -385,7 +394,7 @@ fn different_results_are_shown_with_their_likely_reasons() {
         "faulty_programs",
         &[&arguments[..], &["sound,panicking"]].concat(),
     );
-    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(run.code, Some(1), "{run:?}");
     assert_eq!(
         run.stdout.matches("All results agree").count(),
         2,
@@ -412,18 +421,20 @@ fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let limits = ["--isolate", "--time-limit", "5s", "--memory-limit", "250MB"];
-    let (_, findings) = run_faulty(
+    let (stderr, findings) = run_faulty(
         &sixfold,
         "sound,endless,crashing,hoarding,panicking",
         &limits,
-        0,
+        1,
     );
+    let named = "endless on half-edge; crashing on half-edge; hoarding on half-edge; panicking on half-edge";
+    assert!(stderr.contains(named), "{stderr}");
     let reasons = [
         None,
         Some("no answer to run within 5 s"),
         Some("SIGABRT"),
         Some("memory allocation of"),
-        Some("half-edges are not welcome"),
+        Some("half-edges are not welcome (at crates/measure/examples/faulty_programs.rs:"),
     ];
     assert_eq!(findings.len(), reasons.len());
     for (finding, expected) in findings.iter().zip(reasons) {
@@ -434,6 +445,7 @@ fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
             Some(expected) => {
                 assert_eq!(excluded.len(), 1, "{finding}");
                 assert_eq!(excluded[0]["backend"], "half-edge");
+                assert_eq!(excluded[0]["failed"], true);
                 let reason = excluded[0]["reason"].as_str().expect("a text");
                 assert!(reason.contains(expected), "{reason}");
             }
@@ -447,6 +459,64 @@ fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
             assert!(row["build_ns"].as_f64().expect("a number") > 0.0, "{row}");
         }
     }
+}
+
+#[test]
+fn a_program_that_fails_on_one_structure_is_an_error_that_names_it() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let failing = "panicking,not-a-number";
+    let named = "a program fails: panicking on half-edge; not-a-number on half-edge: correct it";
+    let (stderr, findings) = run_faulty(&sixfold, failing, &[], 1);
+    assert!(stderr.contains(&format!("error: {named}")), "{stderr}");
+    for finding in &findings {
+        assert_eq!(finding["excluded"][0]["failed"], true, "{finding}");
+        assert_eq!(finding["ranking"].as_array().map(Vec::len), Some(3));
+        let first = finding["warnings"][0].as_str().expect("a text");
+        assert!(
+            first.starts_with("The program fails on half-edge: "),
+            "{first}"
+        );
+    }
+    // The panic is a result, and not printed a second time.
+    assert!(!stderr.contains("panicked at"), "{stderr}");
+    let (stderr, _) = run_faulty(&sixfold, failing, &["--keep-going"], 0);
+    assert!(stderr.contains(&format!("note: {named}")), "{stderr}");
+    // Nothing is left to rank.
+    let only = ["--backends", "half-edge"];
+    let arguments = ["grid.obj", "--programs", "panicking", "--rounds", "2"];
+    let run = sixfold.run_example("faulty_programs", &[&arguments[..], &only].concat());
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.stderr.contains("panicking on half-edge"), "{run:?}");
+    assert!(!run.stderr.contains("--max-memory"), "{run:?}");
+    // A failure in one launch of three is one, too.
+    let (stderr, findings) = run_faulty(&sixfold, "panicking-once", &["--launches", "3"], 1);
+    assert!(stderr.contains("panicking-once on half-edge"), "{stderr}");
+    assert_eq!(
+        ranked(&findings[0]),
+        ["corner-table", "face-vertex", "relation-tables"]
+    );
+}
+
+#[test]
+fn a_program_with_other_work_on_one_structure_has_a_different_result() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let (stderr, findings) = run_faulty(&sixfold, "skipping", &[], 1);
+    assert!(stderr.contains("differ"), "{stderr}");
+    let wrong = findings[0]["mismatches"].as_array().expect("a list");
+    assert!(wrong.contains(&Value::from("half-edge")), "{wrong:?}");
+    let arguments = [
+        "grid.obj",
+        "--triangulate",
+        "--programs",
+        "skipping",
+        "--rounds",
+        "2",
+    ];
+    let run = sixfold.run_example("faulty_programs", &arguments);
+    let header = run.stdout.lines().find(|line| line.ends_with("elements"));
+    assert!(header.is_some_and(|line| line.contains("same")), "{run:?}");
 }
 
 #[test]

@@ -105,6 +105,8 @@ impl Sixfold {
         );
         let mut command = Command::new(example);
         command.current_dir(self.folder.path());
+        // With backtraces, the panics of programs are printed.
+        command.env_remove("RUST_BACKTRACE");
         command
     }
 

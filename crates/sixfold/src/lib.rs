@@ -2,7 +2,8 @@
 //!
 //! Every structure has the same queries ([`MeshQuery`]), and an editable form with the same edits
 //! ([`MeshEdit`]). Meshes are built from a [`PolygonMesh`]: positions, and faces as lists of vertex
-//! numbers. Algorithms take any structure as a type parameter.
+//! numbers. Algorithms take any structure as a type parameter. A position is a [`Point`], the type `Vec3` of the crate
+//! [`glam`]; `sixfold::glam` has its other types, such as `sixfold::glam::DVec3`.
 //!
 //! | task | start at |
 //! |---|---|
@@ -282,15 +283,15 @@ pub use sixfold_core::{
     OrientedWalk, QueryCost, Refine, Relation, Representation, Split,
 };
 // Meshes as lists of faces; their topology, creases, sizes and memory.
+/// The crate that defines [`Point`] and other vectors and matrices.
+#[doc(no_inline)]
+pub use sixfold_core::glam;
 #[doc(inline)]
 pub use sixfold_core::{
     BoundaryLoop, Counts, Creases, Distribution, EdgeUse, FaceList, FaceParts, FaceSpans, Facts,
     MemoryFootprint, Point, PolygonCutter, PolygonMesh, PolygonTriangles, SHARPNESS_INFINITE,
     TableBytes, Triangulated, area_vector,
 };
-// The crate that defines `Point`.
-#[doc(no_inline)]
-pub use sixfold_core::glam;
 // Handles of elements, data stored by handle, and types to update both after edits.
 #[doc(inline)]
 pub use sixfold_core::{

@@ -155,6 +155,7 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> Index<K::Handle> for ElementData
     type Output = T;
 
     #[inline]
+    #[track_caller]
     fn index(&self, element: K::Handle) -> &T {
         &self.values[element]
     }
@@ -162,6 +163,7 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> Index<K::Handle> for ElementData
 
 impl<M: MeshQuery, K: ElementKind<M>, T: Clone> IndexMut<K::Handle> for ElementData<M, K, T> {
     #[inline]
+    #[track_caller]
     fn index_mut(&mut self, element: K::Handle) -> &mut T {
         &mut self.values[element]
     }

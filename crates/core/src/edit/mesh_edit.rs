@@ -81,31 +81,79 @@ macro_rules! edits {
 ///
 /// An iterator borrows the mesh, so a loop over a mesh cannot edit it. Collect the handles first, which
 /// takes O(elements) time and memory, and ask before each edit whether the element still exists:
-/// [`contains_edge`](MeshQuery::contains_edge) takes O(1) time if handles are rows or corners. Elements
-/// that the edits create are not in the list: repeat the loop until nothing changes, or push them into the
-/// list.
+/// [`contains_edge`](MeshQuery::contains_edge) takes O(1) time if handles are rows or corners.
 ///
 /// ```
 /// # use sixfold_core::{MeshEdit, MeshQuery};
-/// /// Collapses the edges that are shorter than `least`. Returns the number of collapses.
-/// fn collapse_short<M: MeshEdit>(mesh: &mut M, least: f32) -> usize {
+/// /// Flips the edges that are too long. Returns the number of flips.
+/// fn flip_long<M: MeshEdit>(mesh: &mut M, is_too_long: impl Fn(&M, M::Edge) -> bool) -> usize {
 ///     let mut done = 0;
 ///     for e in mesh.edges().collect::<Vec<_>>() {
-///         if !mesh.contains_edge(e) {
-///             continue; // an earlier collapse removed the edge
-///         }
-///         let [a, b] = mesh.edge_vertices(e);
-///         let [p, q] = [mesh.position(a), mesh.position(b)];
-///         if p.distance(q) < least && mesh.collapse_edge(e, a, (p + q) / 2.0).is_ok() {
-///             done += 1;
+///         if mesh.contains_edge(e) && is_too_long(mesh, e) {
+///             done += usize::from(mesh.flip_edge(e).is_ok());
 ///         }
 ///     }
 ///     done
 /// }
 /// ```
 ///
-/// The same works with vertices and faces. If handles are not rows, a later edit may create an element with the handle
-/// of a removed one; then `contains_edge` finds the new element.
+/// The mesh is valid after this loop, but **the result depends on the structure**: structures list edges in
+/// different orders, and an edit can give another handle to an edge nearby, which the loop then skips. (Structures
+/// differ in what an edit renames. A later edit may also create an element with the handle of a removed one.)
+///
+/// A loop has one result on every structure if
+///
+/// 1. the elements are sorted by what they are, such as their length and positions, and not by handles;
+/// 2. an element is edited only if no earlier edit of the pass has changed a face at its vertices: its handle and
+///    everything around it are then as they were when it was listed. The others get their turn in the next pass,
+///    until a pass changes nothing;
+/// 3. the program asks itself whether an edit keeps the mesh a manifold, such as with `meets_link_condition` of
+///    `sixfold::remeshing`, because structures that hold more than manifolds refuse less.
+///
+/// Each pass takes O(n log n) time for n listed elements.
+///
+/// ```
+/// # use sixfold_core::{MeshEdit, MeshQuery};
+/// /// Collapses edges that are shorter than `least`, the shortest first. Returns the number of collapses.
+/// fn collapse_short<M: MeshEdit>(
+///     mesh: &mut M,
+///     least: f32,
+///     keeps_manifold: impl Fn(&M, M::Edge) -> bool,
+/// ) -> usize {
+///     let mut done = 0;
+///     loop {
+///         let mut short = Vec::new();
+///         for e in mesh.edges() {
+///             let ends = mesh.edge_vertices(e);
+///             let [p, q] = ends.map(|v| mesh.position(v));
+///             if p.distance(q) < least {
+///                 let mut places = [p, q].map(|p| p.to_array().map(f32::to_bits));
+///                 places.sort_unstable();
+///                 short.push((p.distance(q).to_bits(), places, e, ends));
+///             }
+///         }
+///         short.sort_unstable_by_key(|&(length, places, ..)| (length, places));
+///         let mut changed = mesh.vertex_map(false);
+///         let before = done;
+///         for (_, _, e, ends) in short {
+///             if ends.iter().any(|&v| changed[v]) || !keeps_manifold(mesh, e) {
+///                 continue;
+///             }
+///             let [p, q] = ends.map(|v| mesh.position(v));
+///             let around = ends.map(|v| mesh.vertex_vertices(v).collect::<Vec<_>>());
+///             if mesh.collapse_edge(e, ends[0], p.midpoint(q)).is_ok() {
+///                 done += 1;
+///                 for v in around.into_iter().flatten() {
+///                     changed[v] = true;
+///                 }
+///             }
+///         }
+///         if done == before {
+///             return done;
+///         }
+///     }
+/// }
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be edited",
     label = "this mesh is read-only",

@@ -140,6 +140,7 @@ impl<H: RowId, T> Index<H> for RowMap<H, T> {
     type Output = T;
 
     #[inline]
+    #[track_caller]
     fn index(&self, handle: H) -> &T {
         match self.values.get(handle.row() as usize) {
             Some(value) => value,
@@ -150,6 +151,7 @@ impl<H: RowId, T> Index<H> for RowMap<H, T> {
 
 impl<H: RowId, T> IndexMut<H> for RowMap<H, T> {
     #[inline]
+    #[track_caller]
     fn index_mut(&mut self, handle: H) -> &mut T {
         let rows = self.values.len();
         match self.values.get_mut(handle.row() as usize) {
@@ -162,6 +164,7 @@ impl<H: RowId, T> IndexMut<H> for RowMap<H, T> {
 /// Takes the handle by value: a reference would force the handle into memory in the caller.
 #[cold]
 #[inline(never)]
+#[track_caller]
 fn no_such_row<H: Debug>(handle: H, rows: usize) -> ! {
     panic!("no {handle:?} in this map: it has {rows} rows")
 }

@@ -113,6 +113,7 @@ impl<H: Handle> Index<H> for Numbers<H> {
     type Output = u32;
 
     #[inline]
+    #[track_caller]
     fn index(&self, handle: H) -> &u32 {
         let number = &self.numbers[handle];
         if *number == NO_NUMBER {
@@ -124,6 +125,7 @@ impl<H: Handle> Index<H> for Numbers<H> {
 
 #[cold]
 #[inline(never)]
+#[track_caller]
 fn no_number<H: fmt::Debug>(handle: H) -> ! {
     panic!("no number for {handle:?}: it is not one of the numbered elements")
 }

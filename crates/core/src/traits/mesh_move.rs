@@ -31,6 +31,12 @@ use crate::traits::query::{MeshQuery, VertexMap};
 ///     mesh.set_positions(&moved)
 /// }
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "the vertices of `{Self}` cannot be moved",
+    label = "this type does not implement `MeshMove`",
+    note = "a function that only gets `M: MeshQuery` reads the mesh: ask for `M: MeshMove`, or for \
+            `M: MeshEdit`, which includes it"
+)]
 pub trait MeshMove: MeshQuery + Sized {
     /// Moves every vertex to its position in `positions`; O(vertices), or O(corners) if vertices
     /// are identified by coordinates.

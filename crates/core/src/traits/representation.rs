@@ -87,6 +87,12 @@ impl QueryCost {
 /// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
 ///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
 ///   the vertices of the result are in the order of `vertices()`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a structure that can be built from polygons",
+    label = "this type does not implement `Representation`",
+    note = "the six structures implement it, each in two forms, such as `HalfEdgeMesh` and \
+            `EditableHalfEdgeMesh`; a function that builds a mesh asks for `M: Representation`"
+)]
 pub trait Representation: MeshMove + Clone + Sized + Send + Sync {
     /// The name of the structure for users, for example `half-edge`.
     const NAME: &'static str;

@@ -1,11 +1,12 @@
 //! The answer of a pick as text.
 
-use sixfold_results::numbers::{approximate, duration, figure, rounded_down};
+use sixfold_results::numbers::{approximate, duration, figure, grouped, list, rounded_down};
 use sixfold_results::{BreakEven, PickReport, Ranked, Standing};
 
 use crate::command::column_table::{Column, column_table};
 use crate::command::signs::Signs;
-use crate::command::text::TextOutput;
+use crate::command::text::{TextOutput, sanitize};
+use crate::pick::kinds::different_results;
 
 /// Prints the results of a pick.
 pub fn print(report: &PickReport, text: &mut TextOutput) {
@@ -15,13 +16,17 @@ pub fn print(report: &PickReport, text: &mut TextOutput) {
         text.print_line(&ranking(report));
         text.print_line("");
     }
-    if report.program.is_some() && !report.mismatches.is_empty() {
-        text.print_line(&results(report));
+    if let Some((on_mesh, kinds)) = different_results(report) {
+        if report.meshes.len() > 1 {
+            text.print_line(&format!("Results on {}:", sanitize(&on_mesh.mesh.name)));
+        }
+        text.print_line(&results(&kinds));
         text.print_line("");
     }
     text.print_list("- ", same_result(report));
     text.print_list("- ", reasons);
-    let excluded = report.excluded.iter();
+    // The warnings name the backends on which the program fails.
+    let excluded = report.excluded.iter().filter(|excluded| !excluded.failed);
     let excluded = excluded.map(|e| format!("{} is excluded: {}.", e.backend, e.reason));
     text.print_list("- ", excluded);
     if !report.usage.is_empty() {
@@ -32,12 +37,21 @@ pub fn print(report: &PickReport, text: &mut TextOutput) {
     }
 }
 
-/// Says which result of a program all structures have; `None` if results differ.
+/// Says which result of a program all structures have. If results differ and this is no fault, says why.
 fn same_result(report: &PickReport) -> Option<String> {
+    if !report.mismatches.is_empty() {
+        return None;
+    }
+    if let Some((_, kinds)) = different_results(report) {
+        let others = kinds[1..].iter().flatten();
+        let others = list(others.map(|ranked| ranked.backend.clone()));
+        return Some(format!(
+            "Not compared with the other results, because vertices with equal coordinates are merged: {others}."
+        ));
+    }
     let results: Vec<f64> = report.ranking.iter().filter_map(|r| r.result).collect();
     let (first, others) = results.split_first()?;
-    let agree = report.program.is_some() && report.mismatches.is_empty() && !others.is_empty();
-    agree.then(|| {
+    (!others.is_empty()).then(|| {
         format!(
             "All {} results agree, up to rounding: {first:?}.",
             results.len()
@@ -45,27 +59,32 @@ fn same_result(report: &PickReport) -> Option<String> {
     })
 }
 
-/// Returns the table of the results of a program that differ, each with the part by which it differs from the result
-/// of the fastest backend that agrees with the others.
-fn results(report: &PickReport) -> String {
-    let differs = |ranked: &Ranked| report.mismatches.contains(&ranked.backend);
-    let expected = report.ranking.iter().find(|ranked| !differs(ranked));
-    // If no two results agree, the others differ from the first.
-    let expected = expected.or(report.ranking.first());
-    let expected = expected.and_then(|ranked| ranked.result);
-    let rows = || report.ranking.iter();
-    let names = Column::words("", rows().map(|ranked| ranked.backend.clone()));
-    let values = rows().map(|ranked| ranked.result.map_or("–".into(), |x| format!("{x:?}")));
-    let apart = rows().map(|ranked| match (ranked.result, expected) {
-        (Some(x), Some(expected)) if differs(ranked) && x != expected => {
+/// Returns the table of the results of a program that differ. Results that agree have one letter; the others show the part
+/// by which they differ from the first.
+fn results(kinds: &[Vec<&Ranked>]) -> String {
+    let of_kinds = || kinds.iter().zip('A'..);
+    let rows = || of_kinds().flat_map(|(kind, letter)| kind.iter().map(move |&r| (r, letter)));
+    let first = kinds[0][0];
+    let names = Column::words("", rows().map(|(ranked, _)| ranked.backend.clone()));
+    let value = |ranked: &Ranked| ranked.result.map_or("–".into(), |x| format!("{x:?}"));
+    let apart = rows().map(|(ranked, letter)| match (ranked.result, first.result) {
+        (Some(x), Some(expected)) if letter != 'A' && x != expected => {
             format!("{:.1e}", (x - expected).abs() / expected.abs().max(x.abs()))
         }
         _ => String::new(),
     });
-    let columns = [
-        Column::figures("result", values),
+    let mut columns = vec![
+        Column::figures("same", rows().map(|(_, letter)| letter.to_string())),
+        Column::figures("result", rows().map(|(ranked, _)| value(ranked))),
         Column::figures("differs by", apart),
     ];
+    if rows().any(|(ranked, _)| ranked.elements != first.elements) {
+        let elements = rows().map(|(ranked, _)| {
+            let count = ranked.elements.map(|count| grouped(count as usize));
+            count.unwrap_or_default()
+        });
+        columns.push(Column::figures("elements", elements));
+    }
     column_table(&names, &columns)
 }
 
@@ -84,7 +103,8 @@ fn ranking(report: &PickReport) -> String {
     let has_winner = report
         .ranking
         .iter()
-        .all(|ranked| ranked.estimated || ranked.has_enough_samples());
+        .all(|ranked| ranked.estimated || ranked.has_enough_samples())
+        && report.mismatches.is_empty();
     let tied = || report.ranking[1..].iter().filter(|r| r.tied_with_best);
     let mut times = Vec::new();
     let mut ratios = Vec::new();

@@ -43,8 +43,8 @@ Options:
   --launches N          Measure in N fresh processes [default: by the budget]
   --confidence LEVEL    Confidence of all intervals, such as 99% or 0.99
                         [default: 95%]
-  --keep-going          Exit code 0 also if a part cannot be measured; a note
-                        names it
+  --keep-going          Exit code 0 also if a part cannot be measured or a
+                        program fails; a note names it
   --seed N              Seed of the random order of the measurements
                         [default: 1]
   --heap POLICY         Freed memory: kept (by the process) or system
@@ -84,10 +84,10 @@ programs. What they print is not shown. If a program does not end or uses too
 much memory, its launch is the last one. If a program crashes, its launch is
 left out.
 
-Exit codes: 0 success; 1 no structure qualifies for a program, results differ
-between structures, a launch is left out, or a mesh of several cannot be read;
-2 wrong usage or unusable input, or all launches are left out; 4 interrupted, or
-a program did not end; finished results are kept.
+Exit codes: 0 success; 1 a program fails on a structure, or none qualifies for
+it, results differ between structures, a launch is left out, or a mesh of
+several cannot be read; 2 wrong usage or unusable input, or all launches are
+left out; 4 interrupted, or a program did not end; finished results are kept.
 ";
 
 /// The default budget.

@@ -12,10 +12,10 @@ use crate::command::load::study_meshes;
 use crate::command::meshes::find_meshes;
 use crate::command::programs::print_meshes;
 use crate::command::text::{TextOutput, hanging_indent, print_notice, sanitize};
-use crate::engine::agreement::is_close;
-use crate::{Contestant, Outcome, StudyMesh, Suite, SuiteProgram};
+use crate::engine::agreement::is_same_result;
+use crate::{Contestant, Outcome, ProgramRefusal, StudyMesh, Suite, SuiteProgram};
 
-/// The exit code if results differ.
+/// The exit code if results differ or a program fails.
 const DIFFERENT: u8 = 1;
 
 /// Runs each program of `suite` once on each structure, in the structure's own order and in one order, and prints the
@@ -44,7 +44,7 @@ pub(super) fn run(suite: &Suite, arguments: &Arguments) -> Result<ExitCode, Fail
     })
 }
 
-/// Prints the results of a program. Returns whether all agree.
+/// Prints the results of a program. Returns whether it runs on all structures, and all results agree.
 fn print_program(
     program: &SuiteProgram,
     study_mesh: &StudyMesh,
@@ -98,17 +98,18 @@ fn print_program(
         text.print_list("- ", ["There is nothing to compare: only structures whose queries do not scan run in one order."]);
         return true;
     }
+    let found = |order: usize| runs.iter().map(move |(_, results)| results[order].as_ref());
     let agree = [0, 1].map(|order| {
-        let found = runs
-            .iter()
-            .filter_map(|(_, results)| results[order].as_ref().ok());
-        let found: Vec<&Outcome> = found.collect();
-        found
-            .windows(2)
-            .all(|pair| is_close(pair[0].checksum, pair[1].checksum))
+        let found: Vec<&Outcome> = found(order).flatten().collect();
+        let mut pairs = found.windows(2);
+        pairs.all(|pair| is_same_result(pair[0], pair[1]))
     });
     text.print_list("- ", [verdict(agree)]);
-    agree == [true, true]
+    let fails = [0, 1]
+        .into_iter()
+        .flat_map(found)
+        .any(|result| matches!(result, Err(ProgramRefusal::Panicked(_))));
+    agree == [true, true] && !fails
 }
 
 /// Says what it means if the results agree in the structures' own orders, and in one order.

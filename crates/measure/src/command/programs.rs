@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use sixfold::UnknownName;
-use sixfold_results::numbers::{bytes, counted};
+use sixfold_results::numbers::{bytes, counted, list};
 use sixfold_results::{Failed, FailureKind, Finding, PickReport, Results};
 
 use crate::command::arguments::{self, Arguments, Asked};
@@ -282,6 +282,8 @@ struct KeptState {
     /// Whether it is no error if a part cannot be measured.
     keep_going: bool,
     none_qualifies: Vec<String>,
+    /// The programs that fail on some structures, each with their names.
+    failing: Vec<String>,
     /// The current step, such as `geodesics: measuring run on half-edge`, and its start.
     step: String,
     step_start: Instant,
@@ -341,6 +343,7 @@ impl Kept {
             failed,
             keep_going,
             none_qualifies: Vec::new(),
+            failing: Vec::new(),
             step: "loading".into(),
             step_start: Instant::now(),
         })))
@@ -353,16 +356,17 @@ impl Kept {
     /// Prints a finished report and keeps it for the files.
     fn add(&self, report: &PickReport, triangulate: bool) {
         let mut kept = self.lock();
-        if report.ranking.is_empty() && !report.interrupted {
-            kept.none_qualifies.push(report.workload.name.clone());
+        let name = sanitize(&report.workload.name);
+        let failed: Vec<String> = report.failed().map(|e| e.backend.clone()).collect();
+        if !failed.is_empty() {
+            kept.failing.push(format!("{name} on {}", list(failed)));
+        } else if report.ranking.is_empty() && !report.interrupted {
+            kept.none_qualifies.push(name.clone());
         }
         if let Some(session) = &mut kept.session {
             let text = &mut session.text;
             text.print_line("");
-            text.print_line(&hanging_indent(
-                "Program:  ",
-                &sanitize(&report.workload.name),
-            ));
+            text.print_line(&hanging_indent("Program:  ", &name));
             text.print_line("");
             answer::print(report, text);
         }
@@ -387,14 +391,20 @@ impl Kept {
         let interrupted = results.is_interrupted();
         let mut results = results;
         let written = session.write(&mut results);
-        let code = exit_code(written, &results, interrupted, kept.keep_going)?;
+        let code = exit_code(
+            written,
+            &results,
+            interrupted,
+            &kept.failing,
+            kept.keep_going,
+        )?;
         if kept.none_qualifies.is_empty() || launches::has_ended_early() {
             return Ok(code);
         }
         print_stderr(&format!(
             "error: no structure qualifies for {}: relax --max-memory or --backends, use a longer \
              --budget, or repair the mesh (see `sixfold inspect`)",
-            sanitize(&kept.none_qualifies.join(", "))
+            kept.none_qualifies.join(", ")
         ));
         Ok(ExitCode::from(NONE_QUALIFIES))
     }
@@ -434,16 +444,17 @@ impl Kept {
     }
 }
 
-/// The exit code if results differ, or if a part could not be measured.
+/// The exit code if results differ, if a part could not be measured, or if a program fails.
 const MISMATCH: u8 = 1;
 
 /// Prints the final messages and returns the exit code. An error of writing (`written`) takes precedence over different
-/// results, and different results take precedence over an interruption. If a part could not be measured, this is an
-/// error, or a note if `keep_going` is set.
+/// results, and different results take precedence over an interruption. If a part could not be measured, or a program fails
+/// on a structure (`failing`), this is an error, or a note if `keep_going` is set.
 fn exit_code(
     written: Result<(), Failure>,
     results: &Results,
     interrupted: bool,
+    failing: &[String],
     keep_going: bool,
 ) -> Result<ExitCode, Failure> {
     let differing = results.mismatches();
@@ -471,6 +482,12 @@ fn exit_code(
     let failed = failed.filter(|failed| failed.kind == FailureKind::NotMeasured);
     let failed: Vec<&str> = failed.map(|failed| failed.mesh.as_str()).collect();
     let mut lacking = Vec::new();
+    if !failing.is_empty() {
+        lacking.push(format!(
+            "a program fails: {}: correct it, for the reasons above, or leave out the structures with --backends",
+            failing.join("; ")
+        ));
+    }
     if !failed.is_empty() {
         lacking.push(format!(
             "not measured: {}: repair the files, for the reasons in the notes above, or leave them out",

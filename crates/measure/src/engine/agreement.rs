@@ -76,9 +76,7 @@ pub fn compare_checksums(
         }
         let same = match entry.operation() {
             Some(operation) => agree(operation, outcome.checksum, reference.checksum, polygons),
-            None if entry.job.task == Task::Program => {
-                is_close(outcome.checksum, reference.checksum)
-            }
+            None if entry.job.task == Task::Program => is_same_result(&outcome, &reference),
             None => outcome.checksum == reference.checksum,
         };
         if same {
@@ -142,6 +140,11 @@ pub fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bo
     }
     // If the terms of a sum cancel, their rounding errors remain.
     is_close(a, b) || (a - b).abs() <= operation.noise(polygons) + TOLERANCE * a.abs().max(b.abs())
+}
+
+/// Returns whether a program has the same result: the same number of elements, and the same checksum up to rounding.
+pub fn is_same_result(a: &Outcome, b: &Outcome) -> bool {
+    a.elements == b.elements && is_close(a.checksum, b.checksum)
 }
 
 /// Returns whether two numbers differ only by rounding.

@@ -17,9 +17,9 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sixfold::{Facts, PolygonMesh, QueryCost};
-use sixfold_results::{AskedCount, Policy, Time, sanitize};
+use sixfold_results::{AskedCount, Excluded, Policy, Time, sanitize};
 
-use super::program::{PROTOCOL, Program};
+use super::program::{PROTOCOL, Program, STOPPED};
 use super::subject::ExternalSubject;
 use crate::pick::programs::Qualification;
 use crate::refusal;
@@ -63,21 +63,30 @@ pub struct Isolated<'a> {
 }
 
 impl<'a> Isolated<'a> {
-    /// Starts the child. The error is the reason why the program does not run on the structure.
+    /// Starts the child. The error is the exclusion if the program does not run on the structure.
     pub fn start(
         isolation: &Isolation,
         task: &ChildTask,
         contestant: &Contestant,
         stop: &'a AtomicBool,
-    ) -> Result<Self, String> {
-        let json = serde_json::to_string(task).map_err(|error| error.to_string())?;
+    ) -> Result<Self, Excluded> {
+        let name = contestant.name();
+        let excluded = |reason: String| Excluded::new(name, reason);
+        let json = serde_json::to_string(task).map_err(|error| excluded(error.to_string()))?;
         let mut arguments = isolation.command.clone();
         arguments.extend(["--child".into(), json.into()]);
-        let mut program = Program::start(&arguments, Policy::System, isolation.time_limit, stop)?;
-        let handshake = program.handshake()?;
+        let mut program = Program::start(&arguments, Policy::System, isolation.time_limit, stop)
+            .map_err(excluded)?;
+        let handshake = program.handshake().map_err(|reason| Excluded {
+            failed: reason != STOPPED,
+            ..excluded(reason)
+        })?;
         if !handshake.holds {
             let reason = handshake.reason.as_deref().map(sanitize);
-            return Err(reason.unwrap_or_else(|| "it gives no reason".into()));
+            return Err(Excluded {
+                failed: handshake.failed,
+                ..excluded(reason.unwrap_or_else(|| "it gives no reason".into()))
+            });
         }
         let bytes = handshake.bytes.unwrap_or(0);
         Ok(Self {
@@ -151,15 +160,16 @@ pub fn serve_program(
         writeln!(output, "{value}")?;
         output.flush()
     };
-    let refused = |reason: String| json!({"protocol": PROTOCOL, "holds": false, "reason": reason});
+    let refused = |Excluded { reason, failed, .. }: Excluded| json!({"protocol": PROTOCOL, "holds": false, "reason": reason, "failed": failed});
     let programs = suite.programs().iter();
     let mut named = programs.filter(|program| program.name() == task.program);
     let contestants = named.next().map(|program| program.contestants().iter());
     let mut contestants = contestants.into_iter().flatten();
     let Some(contestant) = contestants.find(|c| c.name() == task.backend) else {
-        return answer(refused(
+        return answer(refused(Excluded::new(
+            &task.backend,
             "the child process does not know the program".into(),
-        ));
+        )));
     };
     let facts = Facts::from_polygons(polygons);
     let clock = MachineClock::start();
@@ -170,7 +180,7 @@ pub fn serve_program(
     };
     let mut backend = match qualification.prepare(contestant) {
         Ok(backend) => backend,
-        Err(reason) => return answer(refused(reason)),
+        Err(excluded) => return answer(refused(excluded)),
     };
     answer(json!({
         "protocol": PROTOCOL,

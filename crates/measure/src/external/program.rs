@@ -24,6 +24,8 @@ const LONGEST_LINE: u64 = 1 << 16;
 const STDERR_TAIL_BYTES: usize = 400;
 /// Interval between two checks of the stop flag.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
+/// Why a program has no answer after the measurement was stopped.
+pub const STOPPED: &str = "the study was stopped";
 /// Time limit for a program to end after its input is closed.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
@@ -35,6 +37,9 @@ pub struct Handshake {
     pub holds: bool,
     /// Why the program does not hold the mesh.
     pub reason: Option<String>,
+    /// Whether the reason is a fault of a program of a user.
+    #[serde(default)]
+    pub failed: bool,
     /// Bytes of the structure, if known.
     pub bytes: Option<usize>,
     /// The measured library and its version.
@@ -59,6 +64,7 @@ impl Handshake {
             protocol: PROTOCOL,
             holds: false,
             reason: Some(reason),
+            failed: false,
             bytes: None,
             library: None,
             heap: None,
@@ -223,7 +229,7 @@ impl<'a> Program<'a> {
                 }
                 Err(RecvTimeoutError::Timeout) if self.stop.load(Ordering::Relaxed) => {
                     self.kill();
-                    return Err("the study was stopped".into());
+                    return Err(STOPPED.into());
                 }
                 Err(RecvTimeoutError::Timeout) if start.elapsed() > self.timeout => {
                     self.kill();

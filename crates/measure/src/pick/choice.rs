@@ -113,12 +113,18 @@ pub(super) fn what_would_change(choice: &Choice) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use crate::Operation;
 
     use super::*;
 
-    fn ranked(backend: &str, ratio: f64, tied: bool, bytes: usize, parts: [f64; 2]) -> Ranked {
+    pub(in crate::pick) fn ranked(
+        backend: &str,
+        ratio: f64,
+        tied: bool,
+        bytes: usize,
+        parts: [f64; 2],
+    ) -> Ranked {
         let part = |operation: Operation, ns| PartCost {
             operation: operation.name().into(),
             share: 0.5,
@@ -152,6 +158,7 @@ mod tests {
             warm_up_only: false,
             faults: None,
             result: None,
+            elements: None,
             types: Vec::new(),
             tabulated: Vec::new(),
         }

@@ -16,19 +16,20 @@ use crate::pick::pooled::{Question, pooled};
 /// sentences come from the pooled times.
 ///
 /// A mesh that some launches did not reach has the values of the others. A backend is excluded if no launch has a
-/// time of it.
+/// time of it, or if the program failed on it in some launch.
 pub fn pool_picks(mut launches: Vec<PickReport>) -> PickReport {
     if launches.len() == 1 {
         return launches.remove(0);
     }
     let most = launches.iter().max_by_key(|launch| launch.meshes.len());
     let meshes = most.map_or(&[][..], |launch| &launch.meshes);
+    let excluded = excluded(&launches);
     let outcomes = meshes.iter().map(|mesh| {
         let on_mesh = launches.iter().filter_map(|launch| {
             let mut on_meshes = launch.on_meshes().into_iter();
             Some((launch, on_meshes.find(|on| on.mesh.name == mesh.name)?))
         });
-        pool_mesh(&on_mesh.collect::<Vec<_>>())
+        pool_mesh(&on_mesh.collect::<Vec<_>>(), &excluded)
     });
     let outcomes: Vec<MeshOutcome> = outcomes.flatten().collect();
     let first = &launches[0];
@@ -39,34 +40,37 @@ pub fn pool_picks(mut launches: Vec<PickReport>) -> PickReport {
         program: first.program.clone(),
         needs: first.needs.clone(),
         max_memory: first.max_memory,
+        excluded,
     };
     let interrupted = launches.iter().any(|launch| launch.interrupted);
     let timer = timer.unwrap_or(first.timer);
-    let mut report = pooled(outcomes, question, timer, run, interrupted);
-    report.excluded = excluded(&launches, &report.ranking);
-    report
+    pooled(outcomes, question, timer, run, interrupted)
 }
 
-/// Returns the excluded backends of all launches, without those that are ranked.
-fn excluded(launches: &[PickReport], ranking: &[Ranked]) -> Vec<Excluded> {
+/// Returns the excluded backends of all launches: failures first, and the others only if no launch ranks them.
+fn excluded(launches: &[PickReport]) -> Vec<Excluded> {
     let mut excluded: Vec<Excluded> = Vec::new();
-    for new in launches.iter().flat_map(|launch| &launch.excluded) {
-        let is_known = excluded.iter().any(|known| known.backend == new.backend);
-        let is_ranked = ranking.iter().any(|ranked| ranked.backend == new.backend);
-        if !is_known && !is_ranked {
+    let failed = launches.iter().flat_map(PickReport::failed);
+    let ranked = || launches.iter().flat_map(|launch| &launch.ranking);
+    let others = launches.iter().flat_map(|launch| &launch.excluded);
+    let others = others.filter(|new| ranked().all(|ranked| ranked.backend != new.backend));
+    for new in failed.chain(others) {
+        if excluded.iter().all(|known| known.backend != new.backend) {
             excluded.push(new.clone());
         }
     }
     excluded
 }
 
-/// Pools the results on one mesh, each with the pick that it is from. `None` without a result.
-fn pool_mesh(launches: &[(&PickReport, OnMesh<'_>)]) -> Option<MeshOutcome> {
+/// Pools the results on one mesh, each with the pick that it is from, without `excluded` backends. `None` without a
+/// result.
+fn pool_mesh(launches: &[(&PickReport, OnMesh<'_>)], excluded: &[Excluded]) -> Option<MeshOutcome> {
     let (first, on_first) = launches.first()?;
+    let takes_part = |ranked: &&Ranked| excluded.iter().all(|e| e.backend != ranked.backend);
     let rows: Vec<Vec<ResultRow>> = launches
         .iter()
         .map(|(report, on_mesh)| {
-            let of_each = on_mesh.ranking.iter();
+            let of_each = on_mesh.ranking.iter().filter(takes_part);
             of_each.flat_map(|ranked| report.rows_of(ranked)).collect()
         })
         .collect();
@@ -85,7 +89,8 @@ fn pool_mesh(launches: &[(&PickReport, OnMesh<'_>)]) -> Option<MeshOutcome> {
     let confidence = first.run.settings.confidence;
     let pooled = pool_rows(&of_launches, confidence, |row| row.operation.clone());
     let mut ranking: Vec<Ranked> = Vec::new();
-    for ranked in launches.iter().flat_map(|(_, on_mesh)| on_mesh.ranking) {
+    let all = launches.iter().flat_map(|(_, on_mesh)| on_mesh.ranking);
+    for ranked in all.filter(takes_part) {
         if ranking.iter().all(|known| known.backend != ranked.backend) {
             let of_each = launches.iter().map(|(_, on_mesh)| on_mesh.ranking);
             let of_each = of_each

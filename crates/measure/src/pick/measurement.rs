@@ -139,13 +139,11 @@ impl PickMeasurement<'_, '_> {
                 .filter(|e| e.subject == column)
                 .collect();
             let samples = plan.mix_times(candidate, &own);
-            samples
-                .map(|samples| MeasuredMix {
-                    candidate,
-                    entries: own,
-                    samples,
-                })
-                .map_err(|reason| Excluded::new(&candidate.name, reason))
+            samples.map(|samples| MeasuredMix {
+                candidate,
+                entries: own,
+                samples,
+            })
         };
         let mut measured = Vec::new();
         for column in 0..ranked {
@@ -249,6 +247,7 @@ impl Evaluation<'_> {
             Some(Median::from_samples(times)?.value)
         };
         let build = m.entry(Task::Operation(Operation::Build))?;
+        let outcome = m.entry(Task::Program).and_then(|run| run.outcome);
         let Candidate {
             name,
             made_from,
@@ -279,10 +278,8 @@ impl Evaluation<'_> {
             samples: m.samples.len(),
             warm_up_only: m.is_warm_up_only(),
             faults: m.most_faults(),
-            result: m
-                .entry(Task::Program)
-                .and_then(|run| run.outcome)
-                .map(|outcome| outcome.checksum),
+            result: outcome.map(|outcome| outcome.checksum),
+            elements: outcome.map(|outcome| outcome.elements),
             types: type_paths.iter().map(|&path| path.to_owned()).collect(),
             tabulated: tabulated.iter().map(ToString::to_string).collect(),
         })

@@ -19,6 +19,8 @@ pub struct Question {
     pub program: Option<ProgramReport>,
     pub needs: Vec<Need>,
     pub max_memory: Option<u64>,
+    /// Backends that are excluded on all meshes.
+    pub excluded: Vec<Excluded>,
 }
 
 /// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
@@ -31,7 +33,7 @@ pub fn pooled(
     interrupted: bool,
 ) -> PickReport {
     let several = outcomes.len() > 1;
-    let mut excluded: Vec<Excluded> = Vec::new();
+    let mut excluded = question.excluded;
     for outcome in &mut outcomes {
         for new in outcome.excluded.drain(..) {
             if excluded.iter().any(|known| known.backend == new.backend) {

@@ -19,6 +19,7 @@ use crate::engine::effort::{Budget, Effort};
 use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
 use crate::external::isolated::{ChildTask, Isolated, Isolation};
+use crate::external::program::STOPPED;
 use crate::pages::HeapPolicyConflict;
 use crate::pick::break_even::MeasuredMix;
 use crate::pick::measurement::{
@@ -29,7 +30,7 @@ use crate::pick::tasks::{TaskPlan, program_entry, with_own_time};
 use crate::refusal;
 use crate::study_mesh::StudyMesh;
 use crate::study_mesh::patch;
-use sixfold_results::numbers::{counted, duration};
+use sixfold_results::numbers::{counted, duration, grouped};
 
 /// Building is timed in every n-th round.
 const BUILDS_EVERY: u32 = 3;
@@ -212,6 +213,7 @@ pub fn pick_for_programs_on(
             }),
             needs: Vec::new(),
             max_memory: settings.max_memory,
+            excluded: Vec::new(),
         };
         let interrupted = stop.load(Ordering::Relaxed);
         let report = pooled(
@@ -306,7 +308,7 @@ fn measure_mesh(
                 }
                 backends.push(backend);
             }
-            Err(reason) => excluded.push(Excluded::new(contestant.name(), reason)),
+            Err(refused) => excluded.push(refused),
         }
     }
     let plan = WholeProgram {
@@ -336,14 +338,14 @@ struct Conditions<'e> {
 }
 
 impl<'e> Conditions<'e> {
-    /// Builds a structure and the scratch data; the reason if the structure does not qualify. Puts
+    /// Builds a structure and the scratch data; the exclusion if the structure does not qualify. Puts
     /// what the program asks into `asked`, if a child process has to find this.
     fn prepare(
         &self,
         program: &SuiteProgram,
         contestant: &Contestant,
         asked: &mut Option<Vec<AskedCount>>,
-    ) -> Result<MeasuredBackend<'e>, String> {
+    ) -> Result<MeasuredBackend<'e>, Excluded> {
         let backend: Box<dyn TimedBackend + 'e> = match &self.isolated {
             None => self.qualification.prepare(contestant)?,
             Some((isolation, mesh)) => {
@@ -368,7 +370,7 @@ impl<'e> Conditions<'e> {
         };
         let bytes = backend.bytes();
         if let Some(reason) = over_memory_limit(bytes as u64, self.settings.max_memory) {
-            return Err(reason);
+            return Err(Excluded::new(contestant.name(), reason));
         }
         let candidate = Candidate {
             name: contestant.name().to_owned(),
@@ -400,19 +402,22 @@ pub struct Qualification<'e> {
 }
 
 impl<'e> Qualification<'e> {
-    /// Builds a structure and the scratch data; the reason if the structure does not qualify.
-    pub fn prepare(&self, contestant: &Contestant) -> Result<Box<dyn TimedBackend + 'e>, String> {
+    /// Builds a structure and the scratch data; the exclusion if the structure does not qualify.
+    pub fn prepare(&self, contestant: &Contestant) -> Result<Box<dyn TimedBackend + 'e>, Excluded> {
+        let name = contestant.name();
         if !is_local(contestant) && self.longest_run_ns.is_finite() {
-            self.check_time(contestant)?;
+            let checked = self.check_time(contestant);
+            checked.map_err(|reason| Excluded::new(name, reason))?;
         }
         let prepared = contestant.prepare(self.refusals.polygons);
         let prepared = prepared.map(|built| self.machine.host(built, &self.refusals.counts));
         prepared.map_err(|refusal| match refusal {
             ProgramRefusal::Build(refusal) => {
                 let capabilities = &contestant.info().capabilities;
-                self.refusals.reason(&refusal, capabilities)
+                Excluded::new(name, self.refusals.reason(&refusal, capabilities))
             }
-            other => other.to_string(),
+            ProgramRefusal::Refused(reason) => Excluded::new(name, reason),
+            panicked @ ProgramRefusal::Panicked(_) => Excluded::failed(name, panicked.to_string()),
         })
     }
 
@@ -445,10 +450,12 @@ impl<'e> Qualification<'e> {
             // A larger patch gives a better estimate, if there is time for it.
             if 16.0 * run.time.wall_ns > longest {
                 return Err(format!(
-                    "a run would take about {}, estimated from a run on a patch of {}: use a \
-                     longer --budget, or a smaller mesh",
+                    "a run would take about {}, estimated from a run on a patch of {}, but may take only {}: use {} \
+                     times the --budget, fewer --launches, or a smaller mesh",
                     duration(expected),
                     counted(patch.face_count(), "face", "faces"),
+                    duration(longest),
+                    grouped((expected / longest).ceil() as usize),
                 ));
             }
             size *= 4;
@@ -478,14 +485,21 @@ impl TaskPlan for WholeProgram {
         runs.chain(builds).collect()
     }
 
-    fn mix_times(&self, _: &Candidate, entries: &[&Entry]) -> Result<Vec<(u32, Time)>, String> {
-        let run = entries.iter().find(|e| e.job.task == Task::Program);
-        match run {
-            None => Ok(Vec::new()),
-            Some(entry) => match &entry.refusal {
-                Some(refusal) => Err(refusal.clone()),
-                None => Ok(with_own_time(entry.times(), self.own_ns)),
-            },
+    fn mix_times(
+        &self,
+        candidate: &Candidate,
+        entries: &[&Entry],
+    ) -> Result<Vec<(u32, Time)>, Excluded> {
+        let Some(run) = entries.iter().find(|e| e.job.task == Task::Program) else {
+            return Ok(Vec::new());
+        };
+        match &run.refusal {
+            // The program accepted the mesh when it was set up.
+            Some(reason) => Err(Excluded {
+                failed: reason != STOPPED,
+                ..Excluded::new(&candidate.name, reason.clone())
+            }),
+            None => Ok(with_own_time(run.times(), self.own_ns)),
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::engine::warnings::machine_warnings;
 use crate::operation::Operation;
 use crate::pick::choice::{rule, what_would_change};
+use crate::pick::kinds::different_results;
 use crate::usage;
 use sixfold::Edit;
 use sixfold_results::numbers::{counted, duration, figure, grouped, list, rounded};
@@ -76,7 +77,15 @@ fn needs_editable_mesh(action: &str) -> bool {
 pub fn warnings(report: &PickReport) -> Vec<String> {
     let by_mesh = report.by_mesh.iter().flat_map(|of_mesh| &of_mesh.samples);
     let samples: Vec<&Samples> = report.samples.iter().chain(by_mesh).collect();
-    let mut warnings = machine_warnings(&report.run, &samples);
+    let failed = report.failed();
+    let failed = failed.map(|e| format!("The program fails on {}: {}.", e.backend, e.reason));
+    let mut warnings: Vec<String> = failed.collect();
+    let program = report.program.as_ref();
+    if let Some(program) = program.filter(|_| has_different_results(report)) {
+        warnings.extend(kinds_of_results(report));
+        warnings.push(why_results_differ(&program.kind));
+    }
+    warnings.extend(machine_warnings(&report.run, &samples));
     let more = report.run.settings.more_samples();
     if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
         warnings.push(format!(
@@ -96,29 +105,62 @@ pub fn warnings(report: &PickReport) -> Vec<String> {
             Some(_) => format!("Some times are from only one launch: use {more}."),
         });
     }
-    for backend in &report.mismatches {
-        warnings.push(match report.program {
-            None => format!(
-                "{backend} gives different results from the other backends. This is a fault in \
-                 Sixfold: please report it."
-            ),
-            Some(_) => format!(
-                "{backend} gives a different result from the other backends, by more than rounding."
-            ),
-        });
-    }
-    if report.program.is_some() && !report.mismatches.is_empty() {
-        warnings.push(WHY_RESULTS_DIFFER.into());
-    }
+    let wrong = report
+        .mismatches
+        .iter()
+        .filter(|_| report.program.is_none());
+    warnings.extend(wrong.map(|backend| {
+        format!(
+            "{backend} gives different results from the other backends. This is a fault in Sixfold: please report it."
+        )
+    }));
     warnings
 }
 
+/// Returns whether a program has different results on some backends, so that its times are not of the same work.
+fn has_different_results(report: &PickReport) -> bool {
+    report.program.is_some() && !report.mismatches.is_empty()
+}
+
+/// Names the backends whose results agree.
+fn kinds_of_results(report: &PickReport) -> Option<String> {
+    let (on_mesh, kinds) = different_results(report)?;
+    let kinds = kinds.iter().map(|kind| {
+        let names = list(kind.iter().map(|ranked| ranked.backend.clone()));
+        match kind.len() {
+            1 => format!("{names} agrees with no other"),
+            _ => format!("{names} agree"),
+        }
+    });
+    let kinds: Vec<String> = kinds.collect();
+    Some(format!(
+        "The results on {} differ by more than rounding: {}.",
+        on_mesh.mesh.name,
+        kinds.join("; ")
+    ))
+}
+
 /// The reasons for different results of a program, the most likely first, each with how to test it.
-const WHY_RESULTS_DIFFER: &str = "Likely reasons for different results, the most likely first: (1) a \
-    query lists neighbours, edges or faces in another order, and the program takes the first, or the first of \
-    equals: the option `--order canonical` tells, and sorting them by `vertex_numbers` mends it; (2) edges are numbered \
-    in another order: the same option tells; (3) an edit is refused on one structure, as structures of manifolds do: \
-    count the refused edits in the result; (4) sums of `f32` in another order: add up in `f64`.";
+fn why_results_differ(kind: &str) -> String {
+    let order = "a query lists neighbours, edges or faces in another order, and the program takes the first, or the \
+                 first of equals: `--order canonical` tells, and sorting them by their positions mends it";
+    let renamed = "an edit gives another handle to an element that was collected before it: the documentation of \
+                   `MeshEdit` shows a loop with one result on every structure";
+    let numbers = "elements are numbered in another order: `--order canonical` tells";
+    let refused = "an edit is refused on one structure, as structures of manifolds do: count the refused edits in the \
+                   result";
+    let rounding = "sums of `f32` in another order: add up in `f64`";
+    let reasons = match kind {
+        "edits" => vec![order, renamed, numbers, refused, rounding],
+        _ => vec![order, numbers, rounding],
+    };
+    let reasons = (1..).zip(reasons).map(|(n, why)| format!("({n}) {why}"));
+    let reasons: Vec<String> = reasons.collect();
+    format!(
+        "Likely reasons for different results, the most likely first: {}.",
+        reasons.join("; ")
+    )
+}
 
 fn name(ranked: &Ranked) -> String {
     match &ranked.made_from {
@@ -157,7 +199,8 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
         false => !ranked.tied_with_best,
     };
     let next = report.ranking[1..].iter().find(is_slower);
-    let clear = !report.preliminary && next.is_some_and(|next| next.ci_low.is_some());
+    let differ = has_different_results(report);
+    let clear = !report.preliminary && !differ && next.is_some_and(|next| next.ci_low.is_some());
     let next = next.map_or(String::new(), |next| {
         let sure = next
             .ci_low
@@ -172,9 +215,10 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             next.times(best)
         )
     });
-    let answer = match report.preliminary {
-        true => "Preliminary answer from too few samples: for",
-        false => "For",
+    let answer = match (differ, report.preliminary) {
+        (true, _) => "The results differ, so the times are not of the same work: for",
+        (false, true) => "Preliminary answer from too few samples: for",
+        (false, false) => "For",
     };
     let clearly = match clear {
         true => "clearly ",

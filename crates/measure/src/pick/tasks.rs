@@ -1,6 +1,6 @@
 //! What the backends of a pick run.
 
-use sixfold_results::{PartCost, RUN, Time};
+use sixfold_results::{Excluded, PartCost, RUN, Time};
 
 use crate::engine::measure::Entry;
 use crate::job::Task;
@@ -12,13 +12,13 @@ pub trait TaskPlan {
     /// Returns the entries to measure: for each task, one for each candidate that has it.
     fn entries(&self, candidates: &[Candidate]) -> Vec<Entry>;
 
-    /// Returns the time of one operation on a candidate, rebuilding included, by round; the reason
+    /// Returns the time of one operation on a candidate, rebuilding included, by round; the exclusion
     /// if the candidate refuses a task. `entries` are those of the candidate.
     fn mix_times(
         &self,
         candidate: &Candidate,
         entries: &[&Entry],
-    ) -> Result<Vec<(u32, Time)>, String>;
+    ) -> Result<Vec<(u32, Time)>, Excluded>;
 
     /// Returns the cost of each part of an operation, timed alone.
     fn parts(&self, measured: &MeasuredMix<'_>) -> Vec<PartCost>;

@@ -1,7 +1,6 @@
 //! A program on flat tables of the relations that it queries.
 
 use std::hint::black_box;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use sixfold::{FaceVertexMesh, MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
@@ -9,8 +8,9 @@ use sixfold_relation_table::RelationTables;
 
 use super::Program;
 use super::forms::{Queries, refuses};
+use super::panics::catch;
 use super::recorded::Recorded;
-use super::subject::{ONLY_WHOLE, ProgramRefusal, message, record, run_program};
+use super::subject::{ONLY_WHOLE, ProgramRefusal, record, run_program};
 use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::operation::Operation;
 use crate::series::Series;
@@ -46,8 +46,7 @@ impl<'p, P: Program> OnTables<'p, P> {
             .map_err(|reason| ProgramRefusal::Refused(reason.to_string()))?;
         let refused = |reason: String| ProgramRefusal::Refused(refuses(&reason));
         let set_up = || program.set_up(&tables).map_err(refused);
-        let scratch = catch_unwind(AssertUnwindSafe(set_up))
-            .map_err(|panic| ProgramRefusal::Panicked(message(panic.as_ref())))??;
+        let scratch = catch(set_up).map_err(ProgramRefusal::Panicked)??;
         Ok(Self {
             merged: polygons.vertex_count() - tables.vertex_count(),
             program,

@@ -1,13 +1,12 @@
 //! A program on one structure, as a backend of a trial.
 
-use std::any::Any;
 use std::hint::black_box;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use sixfold::{BuildError, MeshEdit, MeshQuery, PolygonMesh, QueryCost, Representation};
 
 use super::forms::Form;
+use super::panics::catch;
 use super::recorded::{Asked, Recorded};
 use super::tape::TapedRun;
 use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
@@ -26,7 +25,7 @@ pub enum ProgramRefusal {
     /// The program refuses the mesh, or it is left out because a run would take too long.
     #[error("{0}")]
     Refused(String),
-    /// The program panicked.
+    /// The program panicked: the message and the place.
     #[error("the program panicked: {0}")]
     Panicked(String),
 }
@@ -166,8 +165,7 @@ pub(super) fn run_program(
     series: &Series<'_>,
     work: impl FnOnce() -> Result<(Time, Option<Outcome>), String>,
 ) -> TimedRun {
-    let done = catch_unwind(AssertUnwindSafe(work));
-    let done = done.map_err(|panic| format!("the program panicked: {}", message(panic.as_ref())));
+    let done = catch(work).map_err(|panic| ProgramRefusal::Panicked(panic).to_string());
     let refused = match done.and_then(|done| done) {
         Err(reason) => reason,
         Ok((_, Some(outcome))) if !outcome.checksum.is_finite() => format!(
@@ -189,10 +187,9 @@ fn set_up<F: Form>(
     mesh: &F::Mesh,
     polygons: &PolygonMesh,
 ) -> Result<F::Scratch, ProgramRefusal> {
-    match catch_unwind(AssertUnwindSafe(|| F::set_up(program, mesh, polygons))) {
-        Ok(result) => result.map_err(ProgramRefusal::Refused),
-        Err(panic) => Err(ProgramRefusal::Panicked(message(panic.as_ref()))),
-    }
+    let scratch = catch(|| F::set_up(program, mesh, polygons));
+    let scratch = scratch.map_err(ProgramRefusal::Panicked)?;
+    scratch.map_err(ProgramRefusal::Refused)
 }
 
 /// Runs the program once on a structure that counts what the program asks, and keeps the calls if
@@ -213,10 +210,7 @@ where
     if traced {
         mesh.start_trace(polygons);
     }
-    let run = catch_unwind(AssertUnwindSafe(|| {
-        F::run(program, &mut mesh, &mut scratch)
-    }));
-    match run {
+    match catch(|| F::run(program, &mut mesh, &mut scratch)) {
         Ok(_) if traced => {
             let taped = mesh.take_tape(name);
             let asked = taped.as_ref().map_or_else(|| mesh.take(), |run| run.asked);
@@ -231,7 +225,7 @@ where
             at_set_up,
             taped: None,
         }),
-        Err(panic) => Err(ProgramRefusal::Panicked(message(panic.as_ref()))),
+        Err(panic) => Err(ProgramRefusal::Panicked(panic)),
     }
 }
 
@@ -251,8 +245,7 @@ where
         mesh.start_canonical_order(polygons);
     }
     let mut scratch = set_up::<F>(program, &mesh, polygons)?;
-    let run = AssertUnwindSafe(|| F::run(program, &mut mesh, &mut scratch));
-    catch_unwind(run).map_err(|panic| ProgramRefusal::Panicked(message(panic.as_ref())))
+    catch(|| F::run(program, &mut mesh, &mut scratch)).map_err(ProgramRefusal::Panicked)
 }
 
 /// Runs `trace` once on a structure that counts what it asks.
@@ -290,11 +283,4 @@ pub(super) struct RecordedRun {
     pub(super) at_set_up: Asked,
     /// `None` if the run was not traced, or has too many calls.
     pub(super) taped: Option<TapedRun>,
-}
-
-/// Returns the message of a panic.
-pub(super) fn message(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-    text.unwrap_or_else(|| "without a message".into())
 }

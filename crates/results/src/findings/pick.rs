@@ -257,6 +257,9 @@ pub struct Ranked {
     /// The result of a run of a program; `None` for a workload.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub result: Option<f64>,
+    /// The number of elements that a run of a program visits; `None` for a workload.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<u64>,
     /// The Rust paths of the types that a program needs to use this backend: the structure, and relation tables made
     /// from it.
     pub types: Vec<String>,
@@ -360,14 +363,27 @@ pub struct Excluded {
     pub backend: String,
     /// Why the backend does not meet the requirements.
     pub reason: String,
+    /// True if the program of a user fails on the backend: it panics, crashes or does not end, or has no result that can be
+    /// compared. In JSON, left out if it is false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub failed: bool,
 }
 
 impl Excluded {
-    /// Creates the exclusion of a backend.
+    /// Creates the exclusion of a backend that does not meet the requirements.
     pub fn new(backend: &str, reason: String) -> Self {
         Self {
             backend: backend.into(),
             reason,
+            failed: false,
+        }
+    }
+
+    /// Creates the exclusion of a backend on which the program of a user fails.
+    pub fn failed(backend: &str, reason: String) -> Self {
+        Self {
+            failed: true,
+            ..Self::new(backend, reason)
         }
     }
 }
@@ -447,6 +463,11 @@ impl PickReport {
             Some(_) => RUN,
             None => MIX,
         }
+    }
+
+    /// Returns the backends on which the program of a user fails.
+    pub fn failed(&self) -> impl Iterator<Item = &Excluded> {
+        self.excluded.iter().filter(|excluded| excluded.failed)
     }
 
     /// Returns the results on each mesh.

@@ -7,6 +7,7 @@ use clap::Args;
 const NEW_EXAMPLES: &str = "Examples:
   sixfold new my-program
   sixfold new my-program --checkout ~/sixfold
+  sixfold new my-collapses --edits
   cd my-program && cargo run --release -- mesh.obj --budget 20s
 
 Exit codes: 0 success; 2 wrong usage, or DIR exists and is not empty.";
@@ -24,4 +25,7 @@ pub(crate) struct New {
     /// The repository of Sixfold [default: the current folder, one above it, or `sixfold` in one of them]
     #[arg(long, value_name = "DIR")]
     pub(crate) checkout: Option<PathBuf>,
+    /// Write a program that edits the mesh
+    #[arg(long)]
+    pub(crate) edits: bool,
 }

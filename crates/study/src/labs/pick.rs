@@ -174,6 +174,7 @@ pub(crate) fn pick_on(
             program: None,
             needs: settings.needs.clone(),
             max_memory: settings.max_memory,
+            excluded: Vec::new(),
         },
         bench.timer(None),
         bench.run(),

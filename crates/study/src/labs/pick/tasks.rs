@@ -5,7 +5,7 @@ use sixfold::PolygonMesh;
 use sixfold::subdivision::{Method, Scheme};
 use sixfold_core::Counts;
 use sixfold_measure::{Operation, Task};
-use sixfold_results::{MIX, PartCost, Time};
+use sixfold_results::{Excluded, MIX, PartCost, Time};
 use sixfold_workload::{Action, Schedule, Workload};
 
 use crate::engine::measure::Entry;
@@ -109,7 +109,7 @@ impl TaskPlan for Tasks<'_> {
         &self,
         candidate: &Candidate,
         entries: &[&Entry],
-    ) -> Result<Vec<(u32, Time)>, String> {
+    ) -> Result<Vec<(u32, Time)>, Excluded> {
         let find = |task: Task| entries.iter().find(|entry| entry.job.task == task);
         let mut terms = Vec::new();
         let mut add = |task: Task, weight: f64| {
@@ -117,7 +117,9 @@ impl TaskPlan for Tasks<'_> {
                 return Ok(());
             };
             match (&entry.refusal, entry.estimate) {
-                (Some(refusal), _) => return Err(refusal.clone()),
+                (Some(refusal), _) => {
+                    return Err(Excluded::new(&candidate.name, refusal.clone()));
+                }
                 (None, Some(estimate)) => terms.push((weight, vec![(0, estimate)])),
                 (None, None) => terms.push((weight, entry.times())),
             }

@@ -636,6 +636,7 @@ fn a_lower_bound_below_a_measured_time_is_not_ranked_before_it() {
             program: None,
             needs: Vec::new(),
             max_memory: None,
+            excluded: Vec::new(),
         };
         pooled::pooled(outcomes, question, measured.timer, measured.run, false)
     };
