@@ -85,6 +85,7 @@ pub fn warnings(report: &PickReport) -> Vec<String> {
         warnings.extend(kinds_of_results(report));
         warnings.push(why_results_differ(&program.kind));
     }
+    warnings.extend(program.and(report.ranking.first()).and_then(too_short));
     warnings.extend(machine_warnings(&report.run, &samples));
     let more = report.run.settings.more_samples();
     if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
@@ -115,6 +116,19 @@ pub fn warnings(report: &PickReport) -> Vec<String> {
         )
     }));
     warnings
+}
+
+/// The time of a run below which the call of the program and its place in memory count as much as the structure.
+const SHORT_RUN_NS: f64 = 100.0;
+
+/// Warns of a program that does too little to compare structures. `best` is the fastest backend.
+fn too_short(best: &Ranked) -> Option<String> {
+    (best.ns_per_operation < SHORT_RUN_NS).then(|| {
+        format!(
+            "A run takes only {}, so the times say more about the call than about the structure: do more in a run.",
+            duration(best.ns_per_operation)
+        )
+    })
 }
 
 /// Returns whether a program has different results on some backends, so that its times are not of the same work.
@@ -368,4 +382,17 @@ pub(super) fn usage(report: &PickReport) -> Vec<String> {
     used(report).map_or(Vec::new(), |used| {
         usage::lines(&used.types, &used.tabulated, mesh)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pick::choice::tests::ranked;
+
+    #[test]
+    fn only_a_run_that_hardly_takes_time_is_too_short() {
+        let of = |ns: f64| too_short(&ranked("half-edge", 1.0, false, 1, [ns; 2]));
+        assert!(of(99.0).is_some_and(|text| text.contains("only 99.0 ns")));
+        assert_eq!(of(100.0), None);
+    }
 }
