@@ -33,6 +33,7 @@ page = Claims(
         a ball of 40,500 triangles, a torus of 60,000 triangles in random order, the built-in mesh of 20,000 triangles, a terrain with 27 holes (16,747 triangles), a scan of genus 12 (39,906 triangles), and a scan of 99,994 triangles
         The other five meshes
         measurement took 3 seconds
+        at commit 140ee444
         with two cores
         The goals were 95 % of the cases and a mean regret of at most 1.02
         a *first answer*: the structure
@@ -189,11 +190,11 @@ def ball_laplacian():
     return quotient(found["ns"]), quotient(found["predicted_ns"]["recorded workload"])
 
 
-@page.says("The worst cases are `remesh` on the terrain (regret {}) and `taubin` on the terrain (regret {}).")
+@page.says("The worst cases are `remesh` on the torus (regret {}) and `geodesics` on the scan of 99,994 triangles (regret {}).")
 def worst_traces():
     regret = {(row["program"], row["mesh"]): compared(row, "trace")["regret"] for row in data.document(DATA)}
     worst = sorted(regret, key=regret.get, reverse=True)[:2]
-    data.require(worst == [("remesh", "plane_holes"), ("taubin", "plane_holes")], f"the worst cases are {worst}")
+    data.require(worst == [("remesh", "torus-shuffled"), ("geodesics", "koala")], f"the worst cases are {worst}")
     return tuple(f"{regret[case]:.2f}" for case in worst)
 
 

@@ -157,7 +157,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
 }
 
 /// Says that the ranking is that of a model. On 48 cases, the structure that a workload or a trace named was within 5 % of the
-/// fastest in 42 and 45 of them (reports/validity).
+/// fastest in 45 and 46 of them (reports/validity).
 fn print_model(text: &mut TextOutput, model: &str) {
     let line = format!(
         "this {model} stands for a program. The program itself decides: `sixfold new DIR` measures yours, the first \
