@@ -171,3 +171,7 @@ pub mod prelude {
         Refusal, Representation, SideData, SideMap, VertexData, VertexId, VertexMap,
     };
 }
+
+/// The optimisation level at which this crate was compiled: `0` to `3`, `s` or `z`.
+#[doc(hidden)]
+pub const OPT_LEVEL: &str = env!("CORE_OPT_LEVEL");

@@ -88,6 +88,7 @@ impl<C: Heap + AllocationCounter> AllocatorCounters for C {}
 #[doc(hidden)]
 pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
     launches::note_start();
+    sixfold_study::note_commit();
     let width =
         |size: Option<(terminal_size::Width, _)>| size.map(|(width, _)| usize::from(width.0));
     text::set_terminals([

@@ -80,3 +80,10 @@ pub use sixfold_workload::{
     Allocated, AllocationCounter, Backend, Editor, Edits, Heap, MAX_SCANNED_FACES, MeasuredMemory,
     NotCounted, Refiner, SingleEdit, SubdivisionJob, Way,
 };
+
+/// Writes the commit from which this crate was compiled into all results of this process. Commands call it at their start.
+pub fn note_commit() {
+    if let Some(commit) = option_env!("STUDY_COMMIT") {
+        sixfold_measure::engine::run::set_commit(commit);
+    }
+}

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::process::ExitCode;
 
 use sixfold::UnknownName;
+use sixfold_results::numbers::{grouped, list};
 
 use crate::command::arguments::Arguments;
 use crate::command::column_table::{Column, column_table};
@@ -13,6 +14,7 @@ use crate::command::meshes::find_meshes;
 use crate::command::programs::print_meshes;
 use crate::command::text::{TextOutput, hanging_indent, print_notice, sanitize};
 use crate::engine::agreement::is_same_result;
+use crate::pick::programs::is_local;
 use crate::{Contestant, Outcome, ProgramRefusal, StudyMesh, Suite, SuiteProgram};
 
 /// The exit code if results differ or a program fails.
@@ -79,24 +81,50 @@ fn print_program(
         });
         shown.collect::<Vec<_>>()
     };
+    let elements = |order: usize| {
+        let shown = runs.iter().map(move |(_, results)| match &results[order] {
+            Ok(outcome) => grouped(outcome.elements as usize),
+            Err(_) => "–".to_owned(),
+        });
+        shown.collect::<Vec<_>>()
+    };
     let names = Column::words("", runs.iter().map(|(name, _)| name.clone()));
-    let columns = [
+    let mut columns = vec![
         Column::figures("own order", result(0)),
         Column::figures("canonical order", result(1)),
     ];
+    if elements(0)
+        .iter()
+        .chain(&elements(1))
+        .any(|n| *n != elements(0)[0])
+    {
+        columns.insert(1, Column::figures("elements", elements(0)));
+        columns.push(Column::figures("elements", elements(1)));
+    }
     text.print_line(&column_table(&names, &columns));
     text.print_line("");
+    let mut fails = false;
     for (name, results) in &runs {
         if let Some(Err(reason)) = results.iter().find(|result| result.is_err()) {
-            text.print_list(
-                "- ",
-                [format!("{name}: {}.", sanitize(&reason.to_string()))],
+            fails |= !matches!(
+                reason,
+                ProgramRefusal::Build(_) | ProgramRefusal::Refused(_)
             );
+            let reason = sanitize(&reason.to_string());
+            text.print_list("- ", [format!("{name}: {reason}.")]);
         }
     }
-    if runs.len() < 2 {
-        text.print_list("- ", ["There is nothing to compare: only structures whose queries do not scan run in one order."]);
-        return true;
+    let scanning = program.contestants().iter().filter(is_chosen);
+    let scanning = scanning.filter(|contestant| !is_local(contestant));
+    let scanning: Vec<&str> = scanning.map(Contestant::name).collect();
+    if !scanning.is_empty() {
+        text.print_list(
+            "- ",
+            [format!(
+                "Not run here, because their queries scan the mesh: {}.",
+                list(scanning)
+            )],
+        );
     }
     let found = |order: usize| runs.iter().map(move |(_, results)| results[order].as_ref());
     let agree = [0, 1].map(|order| {
@@ -104,18 +132,17 @@ fn print_program(
         let mut pairs = found.windows(2);
         pairs.all(|pair| is_same_result(pair[0], pair[1]))
     });
-    text.print_list("- ", [verdict(agree)]);
-    let fails = [0, 1]
-        .into_iter()
-        .flat_map(found)
-        .any(|result| matches!(result, Err(ProgramRefusal::Panicked(_))));
+    match found(0).flatten().count().min(found(1).flatten().count()) {
+        0 | 1 => text.print_list("- ", ["There is nothing to compare."]),
+        _ => text.print_list("- ", [verdict(agree)]),
+    }
     agree == [true, true] && !fails
 }
 
 /// Says what it means if the results agree in the structures' own orders, and in one order.
 fn verdict(agree: [bool; 2]) -> &'static str {
     match agree {
-        [true, true] => "All results agree, up to rounding.",
+        [true, true] => "These results agree, up to rounding.",
         [false, true] => {
             "The results agree in the canonical order only: the program depends on the order of elements or of the \
              results of a query, for example because it takes the first of equals."
@@ -126,7 +153,8 @@ fn verdict(agree: [bool; 2]) -> &'static str {
         }
         [false, false] => {
             "The results differ in the canonical order, too, so the order is not the only reason: count the refused edits \
-             in the result, because structures of manifolds refuse some edits that others accept, and add up in `f64`."
+             in the result, because structures of manifolds refuse some edits that others accept; do not keep handles \
+             that an edit renames; add up in `f64`."
         }
     }
 }

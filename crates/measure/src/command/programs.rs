@@ -114,6 +114,17 @@ fn isolation(arguments: &Arguments, memory_limit: Option<u64>) -> Result<Isolati
         Some(budget) => (budget / 4).max(LEAST_TIME_LIMIT),
         None => NO_TIME_LIMIT,
     };
+    let budget = arguments.effort.budget();
+    if let Some((limit, _)) = arguments
+        .time_limit
+        .zip(budget)
+        .filter(|(limit, budget)| limit > budget)
+    {
+        print_notice(&format!(
+            "note: --time-limit {:.1}s is longer than the --budget: a structure that does not end takes the time of the others",
+            limit.as_secs_f64()
+        ));
+    }
     let command = [executable.into()].into_iter();
     Ok(Isolation {
         command: command.chain(std::env::args_os().skip(1)).collect(),
@@ -358,10 +369,10 @@ impl Kept {
         let mut kept = self.lock();
         let name = sanitize(&report.workload.name);
         let failed: Vec<String> = report.failed().map(|e| e.backend.clone()).collect();
-        if !failed.is_empty() {
-            kept.failing.push(format!("{name} on {}", list(failed)));
-        } else if report.ranking.is_empty() && !report.interrupted {
+        if report.ranking.is_empty() && !report.interrupted {
             kept.none_qualifies.push(name.clone());
+        } else if !failed.is_empty() {
+            kept.failing.push(format!("{name} on {}", list(failed)));
         }
         if let Some(session) = &mut kept.session {
             let text = &mut session.text;
@@ -402,8 +413,8 @@ impl Kept {
             return Ok(code);
         }
         print_stderr(&format!(
-            "error: no structure qualifies for {}: relax --max-memory or --backends, use a longer \
-             --budget, or repair the mesh (see `sixfold inspect`)",
+            "error: no structure is ranked for {}, for the reasons above: correct the program, relax --max-memory or \
+             --backends, use a longer --budget, cut the faces with --triangulate, or repair the mesh (see `sixfold inspect`)",
             kept.none_qualifies.join(", ")
         ));
         Ok(ExitCode::from(NONE_QUALIFIES))
@@ -484,7 +495,8 @@ fn exit_code(
     let mut lacking = Vec::new();
     if !failing.is_empty() {
         lacking.push(format!(
-            "a program fails: {}: correct it, for the reasons above, or leave out the structures with --backends",
+            "a program fails: {}: correct it, for the reasons above (RUST_BACKTRACE=1 prints the calls of a panic), or \
+             leave out the structures with --backends",
             failing.join("; ")
         ));
     }

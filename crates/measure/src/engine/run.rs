@@ -1,11 +1,20 @@
 //! What is known about a measurement when it begins: the machine, the program and the time.
 
 use std::fs;
+use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::{COMPILATION, MachineClock, Operation, caches};
 use sixfold_results::{Environment, Run, RunSettings, Start};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
+
+/// The commit of Sixfold that was compiled, if this package does not know it.
+static COMMIT: OnceLock<&'static str> = OnceLock::new();
+
+/// Sets the commit of all measurements of this process. A second commit is ignored.
+pub fn set_commit(commit: &'static str) {
+    _ = COMMIT.set(commit);
+}
 
 /// Describes a measurement that begins now.
 pub fn start_run(settings: RunSettings) -> Run {
@@ -38,9 +47,10 @@ fn environment() -> Environment {
         .cpus()
         .first()
         .map(|cpu| cpu.brand().trim().to_owned());
+    let commit = COMMIT.get().copied().or(option_env!("MEASURE_COMMIT"));
     Environment {
         sixfold: env!("CARGO_PKG_VERSION").into(),
-        commit: option_env!("STUDY_COMMIT").map(str::to_owned),
+        commit: commit.map(str::to_owned),
         rustc: COMPILATION.rustc.into(),
         profile: COMPILATION.profile.into(),
         opt_level: COMPILATION.opt_level.into(),

@@ -14,6 +14,7 @@ use crate::engine::bench::{Bench, Columns, Trial, TrialResult};
 use crate::engine::effort::Effort;
 use crate::engine::measure::{Entry, Progress};
 use crate::pick::break_even::{MeasuredMix, break_even};
+use crate::pick::kinds::kinds;
 use crate::pick::tasks::TaskPlan;
 use crate::study_mesh::StudyMesh;
 use crate::study_mesh::is_skewed;
@@ -166,9 +167,17 @@ impl PickMeasurement<'_, '_> {
         let wrong = entries.iter().zip(agreements);
         let wrong = wrong.filter(|(_, agreement)| *agreement == Agreement::Mismatch);
         let wrong: BTreeSet<usize> = wrong.map(|(entry, _)| entry.subject).collect();
-        let wrong = wrong
+        let mut wrong: Vec<String> = wrong
             .into_iter()
-            .map(|subject| candidates[subject].name.clone());
+            .map(|subject| candidates[subject].name.clone())
+            .collect();
+        // Of a program, each backend is compared with one other, which may be the odd one.
+        let kinds = kinds(&ranking);
+        if let [most, next, ..] = &kinds[..]
+            && most.len() > next.len()
+        {
+            wrong.retain(|name| most.iter().all(|ranked| ranked.backend != *name));
+        }
         MeshOutcome {
             mesh: self.study_mesh.report(),
             samples,
@@ -176,7 +185,7 @@ impl PickMeasurement<'_, '_> {
             ranking,
             excluded,
             control_ratios: repeated.map(Some).into_iter().collect(),
-            disagreeing: wrong.collect(),
+            disagreeing: wrong,
             operations,
             shortest_ns,
         }

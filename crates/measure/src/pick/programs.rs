@@ -417,7 +417,9 @@ impl<'e> Qualification<'e> {
                 Excluded::new(name, self.refusals.reason(&refusal, capabilities))
             }
             ProgramRefusal::Refused(reason) => Excluded::new(name, reason),
-            panicked @ ProgramRefusal::Panicked(_) => Excluded::failed(name, panicked.to_string()),
+            fault @ (ProgramRefusal::Panicked(_) | ProgramRefusal::NoResult(_)) => {
+                Excluded::failed(name, fault.to_string())
+            }
         })
     }
 

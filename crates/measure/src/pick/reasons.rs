@@ -1,5 +1,6 @@
 //! The result of a pick and its reasons, as sentences.
 
+use crate::engine::agreement::is_close;
 use crate::engine::warnings::machine_warnings;
 use crate::operation::Operation;
 use crate::pick::choice::{rule, what_would_change};
@@ -147,8 +148,14 @@ fn kinds_of_results(report: &PickReport) -> Option<String> {
         }
     });
     let kinds: Vec<String> = kinds.collect();
+    let checksums = on_mesh.ranking.iter().filter_map(|ranked| ranked.result);
+    let checksums: Vec<f64> = checksums.collect();
+    let what = match checksums.iter().all(|&one| is_close(one, checksums[0])) {
+        true => "numbers of elements",
+        false => "results",
+    };
     Some(format!(
-        "The results on {} differ by more than rounding: {}.",
+        "The {what} on {} differ by more than rounding: {}.",
         on_mesh.mesh.name,
         kinds.join("; ")
     ))
@@ -163,9 +170,12 @@ fn why_results_differ(kind: &str) -> String {
     let numbers = "elements are numbered in another order: `--order canonical` tells";
     let refused = "an edit is refused on one structure, as structures of manifolds do: count the refused edits in the \
                    result";
+    let moved = "a map was made before a vertex moved: on polygon-soup, whose vertices are their positions, the vertex \
+                 then has another handle";
     let rounding = "sums of `f32` in another order: add up in `f64`";
     let reasons = match kind {
-        "edits" => vec![order, renamed, numbers, refused, rounding],
+        "edits" => vec![order, renamed, moved, numbers, refused, rounding],
+        "moves" => vec![order, moved, numbers, rounding],
         _ => vec![order, numbers, rounding],
     };
     let reasons = (1..).zip(reasons).map(|(n, why)| format!("({n}) {why}"));
@@ -229,10 +239,15 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             next.times(best)
         )
     });
-    let answer = match (differ, report.preliminary) {
-        (true, _) => "The results differ, so the times are not of the same work: for",
-        (false, true) => "Preliminary answer from too few samples: for",
-        (false, false) => "For",
+    let failed = report.failed().map(|excluded| &excluded.backend);
+    let failed: Vec<&String> = failed.collect();
+    let answer = match (differ, report.preliminary, &failed[..]) {
+        (true, ..) => "The results differ, so the times are not of the same work: for".into(),
+        (false, true, []) => "Preliminary answer from too few samples: for".into(),
+        (false, _, failed @ [_, ..]) => {
+            format!("Without {}, on which the program fails: for", list(failed))
+        }
+        (false, false, []) => "For".to_owned(),
     };
     let clearly = match clear {
         true => "clearly ",

@@ -25,6 +25,9 @@ pub enum ProgramRefusal {
     /// The program refuses the mesh, or it is left out because a run would take too long.
     #[error("{0}")]
     Refused(String),
+    /// The result of the program cannot be compared: it is not a number, or the program did nothing.
+    #[error("{0}")]
+    NoResult(String),
     /// The program panicked: the message and the place.
     #[error("the program panicked: {0}")]
     Panicked(String),
@@ -166,20 +169,28 @@ pub(super) fn run_program(
     work: impl FnOnce() -> Result<(Time, Option<Outcome>), String>,
 ) -> TimedRun {
     let done = catch(work).map_err(|panic| ProgramRefusal::Panicked(panic).to_string());
-    let refused = match done.and_then(|done| done) {
-        Err(reason) => reason,
-        Ok((_, Some(outcome))) if !outcome.checksum.is_finite() => format!(
-            "the checksum of the program is {}, so the results cannot be compared",
-            outcome.checksum
-        ),
-        Ok((_, Some(outcome))) if outcome.elements == 0 => {
-            "the program counted no work, so there is nothing to measure".into()
+    let checked = done.and_then(|done| {
+        let (time, outcome) = done?;
+        outcome.map_or(Ok(()), |outcome| check(&outcome))?;
+        Ok((time, outcome))
+    });
+    match checked {
+        Ok((time, outcome)) => TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome),
+        Err(reason) => TimedRun::refused(reason, series),
+    }
+}
+
+/// Checks that a result can be compared with others; the reason if not.
+fn check(outcome: &Outcome) -> Result<(), String> {
+    match outcome {
+        Outcome { checksum, .. } if !checksum.is_finite() => Err(format!(
+            "the checksum of the program is {checksum}, so the results cannot be compared"
+        )),
+        Outcome { elements: 0, .. } => {
+            Err("the program counted no work, so there is nothing to measure".into())
         }
-        Ok((time, outcome)) => {
-            return TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome);
-        }
-    };
-    TimedRun::refused(refused, series)
+        _ => Ok(()),
+    }
 }
 
 fn set_up<F: Form>(
@@ -245,7 +256,10 @@ where
         mesh.start_canonical_order(polygons);
     }
     let mut scratch = set_up::<F>(program, &mesh, polygons)?;
-    catch(|| F::run(program, &mut mesh, &mut scratch)).map_err(ProgramRefusal::Panicked)
+    let outcome = catch(|| F::run(program, &mut mesh, &mut scratch));
+    let outcome = outcome.map_err(ProgramRefusal::Panicked)?;
+    check(&outcome).map_err(ProgramRefusal::NoResult)?;
+    Ok(outcome)
 }
 
 /// Runs `trace` once on a structure that counts what it asks.

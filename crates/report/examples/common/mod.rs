@@ -18,6 +18,7 @@ use sixfold_study::HeapGuard;
 /// Describes the machine, and keeps freed memory pages from now on.
 fn start() -> Run {
     let heap = HeapGuard::acquire(Policy::Kept).expect("the only guard");
+    sixfold_study::note_commit();
     let mut run = sixfold_study::start_run(RunSettings::default());
     run.environment.heap = Some(heap.hold_until_exit());
     run
