@@ -129,7 +129,7 @@ pub use edit::edit_check::{check_corners, check_cut, check_fans_without, check_r
 pub use edit::edit_log::uses_reports;
 pub use edit::new_rows::NewRows;
 pub use handles::distinct::{Distinct, DistinctWalk};
-pub use handles::iterator_ext::{IteratorExt, MapInline};
+pub use handles::iterator_ext::{FilterInline, IteratorExt, MapInline};
 #[cfg(feature = "lower-limits")]
 pub use handles::limits::with_lower_limits;
 pub use handles::limits::{MAX_CORNERS, MAX_EDGES};

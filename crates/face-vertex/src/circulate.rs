@@ -207,7 +207,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     pub(crate) fn faces_along(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
         let (v, fan, other) = self.shorter_fan(e);
         let fan = fan.iter().map_inline(|&f| f);
-        fan.filter(move |&f| has_side_between(self.known_face(f), v, other))
+        fan.filter_inline(move |&f| has_side_between(self.known_face(f), v, other))
     }
 
     /// Returns the faces that share a side with `f`, each once.

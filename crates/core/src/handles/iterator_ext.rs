@@ -4,8 +4,8 @@ use std::hash::Hash;
 
 use crate::handles::distinct::Distinct;
 
-/// Adds [`distinct`](IteratorExt::distinct) and [`map_inline`](IteratorExt::map_inline) to every
-/// iterator.
+/// Adds [`distinct`](IteratorExt::distinct), [`map_inline`](IteratorExt::map_inline) and
+/// [`filter_inline`](IteratorExt::filter_inline) to every iterator.
 pub trait IteratorExt: Iterator + Sized {
     /// Yields each distinct item once, at its first occurrence.
     ///
@@ -31,6 +31,14 @@ pub trait IteratorExt: Iterator + Sized {
     #[inline]
     fn map_inline<B, F: FnMut(Self::Item) -> B>(self, f: F) -> MapInline<Self, F> {
         MapInline { items: self, f }
+    }
+
+    /// Yields the items for which `keeps` is true, like [`filter`](Iterator::filter). The `fold` of the result is always
+    /// inlined, for the same reason as that of [`map_inline`](Self::map_inline): with `filter`, the faces of an edge of a
+    /// face-vertex mesh take 15 % more instructions.
+    #[inline]
+    fn filter_inline<F: FnMut(&Self::Item) -> bool>(self, keeps: F) -> FilterInline<Self, F> {
+        FilterInline { items: self, keeps }
     }
 }
 
@@ -63,9 +71,62 @@ impl<I: Iterator, B, F: FnMut(I::Item) -> B> Iterator for MapInline<I, F> {
     }
 }
 
+/// The iterator of [`filter_inline`](IteratorExt::filter_inline).
+#[derive(Clone, Debug)]
+pub struct FilterInline<I, F> {
+    items: I,
+    keeps: F,
+}
+
+impl<I: Iterator, F: FnMut(&I::Item) -> bool> Iterator for FilterInline<I, F> {
+    type Item = I::Item;
+
+    #[inline]
+    fn next(&mut self) -> Option<I::Item> {
+        self.items.find(&mut self.keeps)
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (0, self.items.size_hint().1)
+    }
+
+    #[inline(always)]
+    fn fold<A, G: FnMut(A, I::Item) -> A>(self, init: A, mut visit: G) -> A {
+        let mut keeps = self.keeps;
+        self.items.fold(init, |folded, item| match keeps(&item) {
+            true => visit(folded, item),
+            false => folded,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn kept_items_are_the_same_by_next_and_by_fold() {
+        let is_kept = |i: &i32| i % 3 != 0;
+        for len in 0..8 {
+            let mut rest = (0..len).filter_inline(is_kept);
+            for start in (0..len).filter(is_kept) {
+                let expected: Vec<i32> = (start..len).filter(is_kept).collect();
+                let by_fold = rest.clone().fold(Vec::new(), |mut folded, item| {
+                    folded.push(item);
+                    folded
+                });
+                assert_eq!(by_fold, expected);
+                assert!(
+                    rest.size_hint()
+                        .1
+                        .is_some_and(|most| most >= expected.len())
+                );
+                assert_eq!(rest.next(), Some(start));
+            }
+            assert_eq!(rest.next(), None);
+        }
+    }
 
     #[test]
     fn mapped_items_are_the_same_by_next_and_by_fold() {
