@@ -34,8 +34,8 @@ pub trait IteratorExt: Iterator + Sized {
     }
 
     /// Yields the items for which `keeps` is true, like [`filter`](Iterator::filter). The `fold` of the result is always
-    /// inlined, for the same reason as that of [`map_inline`](Self::map_inline): with `filter`, the faces of an edge of a
-    /// face-vertex mesh take 15 % more instructions.
+    /// inlined, for the same reason as that of [`map_inline`](Self::map_inline): without it, counting the boundary edges of a
+    /// face-vertex mesh takes 8 % more instructions.
     #[inline]
     fn filter_inline<F: FnMut(&Self::Item) -> bool>(self, keeps: F) -> FilterInline<Self, F> {
         FilterInline { items: self, keeps }
