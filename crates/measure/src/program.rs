@@ -52,7 +52,7 @@ macro_rules! program_kind {
             /// triangle". A program that refuses a mesh must refuse it on each structure.
             fn set_up<M: $bound>(&self, mesh: &M) -> Result<Self::Scratch<M>, String>;
 
-            /// Runs the program once. This work is timed.
+            /// Runs the program once. This work is timed. Every run has the same result, up to rounding.
             fn run<M: $bound>(
                 &self,
                 mesh: $($mesh)+ M,

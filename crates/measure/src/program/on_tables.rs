@@ -10,7 +10,7 @@ use super::Program;
 use super::forms::{Queries, refuses};
 use super::panics::catch;
 use super::recorded::Recorded;
-use super::subject::{ONLY_WHOLE, ProgramRefusal, record, run_program};
+use super::subject::{FirstResult, ONLY_WHOLE, ProgramRefusal, record, run_program};
 use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::operation::Operation;
 use crate::series::Series;
@@ -28,6 +28,7 @@ pub(super) struct OnTables<'p, P: Program> {
     tables: RelationTables,
     scratch: P::Scratch<RelationTables>,
     merged: usize,
+    first: FirstResult,
 }
 
 impl<'p, P: Program> OnTables<'p, P> {
@@ -54,21 +55,24 @@ impl<'p, P: Program> OnTables<'p, P> {
             relations,
             tables,
             scratch,
+            first: FirstResult::default(),
         })
     }
 
-    fn run_program(&mut self, series: &Series<'_>) -> (Time, Option<Outcome>) {
+    fn run_program(&mut self, series: &Series<'_>) -> Result<(Time, Option<Outcome>), String> {
         let Self {
             program,
             tables,
             scratch,
+            first,
             ..
         } = self;
+        let mut last = None;
         let time = series.time_together(|| {
-            _ = black_box(program.run(black_box(&*tables), scratch));
+            last = black_box(Some(program.run(black_box(&*tables), scratch)));
         });
-        let outcome = series.check.then(|| program.run(tables, scratch));
-        (time, outcome)
+        let outcome = last.map(|last| first.checked(last)).transpose()?;
+        Ok((time, outcome.filter(|_| series.check)))
     }
 
     fn build(&self, series: &Series<'_>) -> (Time, Option<Outcome>) {
@@ -112,7 +116,7 @@ impl<P: Program> TimedBackend for OnTables<'_, P> {
     fn run(&mut self, job: &Job, series: &Series<'_>) -> TimedRun {
         match job.task {
             Task::Operation(Operation::Build) => run_program(series, || Ok(self.build(series))),
-            Task::Program => run_program(series, || Ok(self.run_program(series))),
+            Task::Program => run_program(series, || self.run_program(series)),
             _ => TimedRun::refused(ONLY_WHOLE.into(), series),
         }
     }

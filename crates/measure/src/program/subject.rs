@@ -9,6 +9,7 @@ use super::forms::Form;
 use super::panics::catch;
 use super::recorded::{Asked, Recorded};
 use super::tape::TapedRun;
+use crate::engine::agreement::is_same_result;
 use crate::job::{Job, Outcome, Task, TimedBackend, TimedRun};
 use crate::operation::Operation;
 use crate::series::{ReusedCopies, Series, time_making};
@@ -41,6 +42,7 @@ pub(super) struct Subject<'p, F: Form> {
     scratch: F::Scratch,
     /// The copies on which a program runs that changes the mesh.
     copies: ReusedCopies<WorkingCopy<F>>,
+    first: FirstResult,
 }
 
 /// A copy of the mesh that a run changes.
@@ -64,6 +66,7 @@ impl<'p, F: Form> Subject<'p, F> {
             mesh,
             scratch,
             copies: ReusedCopies::default(),
+            first: FirstResult::default(),
         })
     }
 
@@ -77,13 +80,15 @@ impl<'p, F: Form> Subject<'p, F> {
             program,
             mesh,
             scratch,
+            first,
             ..
         } = self;
+        let mut last = None;
         let time = series.time_together(|| {
-            _ = black_box(F::run(program, black_box(mesh), scratch));
+            last = black_box(Some(F::run(program, black_box(mesh), scratch)));
         });
-        let outcome = series.check.then(|| F::run(program, mesh, scratch));
-        Ok((time, outcome))
+        let outcome = last.map(|last| first.checked(last)).transpose()?;
+        Ok((time, outcome.filter(|_| series.check)))
     }
 
     /// Runs the program on fresh copies of the mesh and of the scratch data.
@@ -110,10 +115,11 @@ impl<'p, F: Form> Subject<'p, F> {
         let Some(copy) = self.copies.used_copy() else {
             return Ok((time, None));
         };
-        match &copy.scratch {
-            Err(reason) => Err(reason.clone()),
-            Ok(_) => Ok((time, copy.outcome.filter(|_| series.check))),
+        if let Err(reason) = &copy.scratch {
+            return Err(reason.clone());
         }
+        let outcome = copy.outcome.map(|last| self.first.checked(last));
+        Ok((time, outcome.transpose()?.filter(|_| series.check)))
     }
 
     /// Builds the structure as `series` describes.
@@ -163,20 +169,35 @@ impl<F: Form> TimedBackend for Subject<'_, F> {
 pub(super) const ONLY_WHOLE: &str = "a program runs only as a whole";
 
 /// Runs `work`, which returns the time of all runs of `series` and the result. Refuses a program that
-/// panics, a result that cannot be compared, and one that shows that nothing was done.
+/// panics.
 pub(super) fn run_program(
     series: &Series<'_>,
     work: impl FnOnce() -> Result<(Time, Option<Outcome>), String>,
 ) -> TimedRun {
     let done = catch(work).map_err(|panic| ProgramRefusal::Panicked(panic).to_string());
-    let checked = done.and_then(|done| {
-        let (time, outcome) = done?;
-        outcome.map_or(Ok(()), |outcome| check(&outcome))?;
-        Ok((time, outcome))
-    });
-    match checked {
+    match done.flatten() {
         Ok((time, outcome)) => TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome),
         Err(reason) => TimedRun::refused(reason, series),
+    }
+}
+
+/// The result of the first run of a program on a structure.
+#[derive(Default)]
+pub(super) struct FirstResult(Option<Outcome>);
+
+impl FirstResult {
+    /// Returns `later`, the result of a later run; the reason if it cannot be compared or is not that of the first run.
+    pub(super) fn checked(&mut self, later: Outcome) -> Result<Outcome, String> {
+        check(&later)?;
+        let first = *self.0.get_or_insert(later);
+        if is_same_result(&first, &later) {
+            return Ok(later);
+        }
+        Err(format!(
+            "the result of the program changes from run to run: {} of {} elements, then {} of {}; a run must reset what it \
+             keeps in the scratch data, and draw the same random numbers",
+            first.checksum, first.elements, later.checksum, later.elements
+        ))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Tests of programs of users on all structures.
 
 use std::num::NonZeroU32;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use sixfold::prelude::*;
 use sixfold::{Split, shapes};
@@ -208,6 +208,63 @@ fn faults_of_a_program_exclude_the_structure_with_the_reason() {
         assert_eq!(reasons.len(), 7, "six structures and tables: {reasons:?}");
         assert!(reasons.iter().all(|r| r.contains(reason)), "{reasons:?}");
         assert!(report.excluded.iter().all(|e| e.failed));
+    }
+}
+
+/// Adds to what the run before left in the scratch data.
+struct AddsUp;
+
+impl Program for AddsUp {
+    type Scratch<M: MeshQuery> = f64;
+
+    fn name(&self) -> &str {
+        "adds-up"
+    }
+
+    fn set_up<M: MeshQuery>(&self, _: &M) -> Result<f64, String> {
+        Ok(0.0)
+    }
+
+    fn run<M: MeshQuery>(&self, mesh: &M, sum: &mut f64) -> Outcome {
+        *sum += mesh.vertex_count() as f64;
+        Outcome::new(*sum, 1)
+    }
+}
+
+/// Draws another number in each run: the number of runs.
+struct Draws(AtomicU64);
+
+impl EditProgram for Draws {
+    type Scratch<M: MeshEdit> = ();
+
+    fn name(&self) -> &str {
+        "draws"
+    }
+
+    fn set_up<M: MeshEdit>(&self, _: &M) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn run<M: MeshEdit>(&self, mesh: &mut M, (): &mut ()) -> Outcome {
+        let drawn = self.0.fetch_add(1, Ordering::Relaxed);
+        Outcome::new(mesh.face_count() as f64, 1 + drawn)
+    }
+}
+
+#[test]
+fn a_result_that_changes_from_run_to_run_is_a_failure() {
+    let suite = Suite::new()
+        .program(AddsUp)
+        .edit_program(Draws(AtomicU64::new(0)));
+    for report in measure(&suite) {
+        assert_eq!(report.choice, None);
+        assert!(report.excluded.len() >= 6, "{:?}", report.excluded);
+        for excluded in &report.excluded {
+            assert!(excluded.failed, "{excluded:?}");
+            let reason = &excluded.reason;
+            let message = "the result of the program changes from run to run: ";
+            assert!(reason.starts_with(message), "{reason}");
+        }
     }
 }
 
