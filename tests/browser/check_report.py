@@ -44,8 +44,8 @@ return [...document.querySelectorAll('figure[data-figure]')].map((figure) => ({
     text: [...figure.querySelectorAll('svg text')].map((text) => text.textContent),
     label: figure.querySelector('svg').getAttribute('aria-label'),
     source: figure.querySelector('.source').textContent,
-    rows: figure.parentElement.querySelectorAll('tbody tr').length,
-    link: figure.parentElement.querySelector('a.permalink').getAttribute('href'),
+    rows: figure.closest('section').querySelectorAll('tbody tr').length,
+    link: figure.closest('section').querySelector('a.permalink').getAttribute('href'),
     clipped: [...figure.querySelectorAll('svg')].flatMap((svg) => [...svg.querySelectorAll('text')].filter((text) => {
         const box = text.getBBox(), view = svg.viewBox.baseVal;
         return box.x < -1 || box.x + box.width > view.width + 1;
@@ -204,8 +204,11 @@ def is_bound(row):
 
 def check_heat_map(figure, ratios, columns, bounds, sampled):
     measured = {operation for (operation, _), ratio in ratios.items() if ratio}
-    assert len(figure["marks"]) == len(measured) * len(columns), figure["id"]
-    assert figure["rows"] == len(measured), figure["id"]
+    # On a slow machine, a time budget may leave an operation without a time.
+    drawn = {mark["title"].split(" on ", 1)[0] for mark in figure["marks"]}
+    assert measured <= drawn <= {operation for operation, _ in ratios}, drawn
+    assert len(figure["marks"]) == len(drawn) * len(columns), figure["id"]
+    assert figure["rows"] == len(drawn), figure["id"]
     for mark in figure["marks"]:
         operation, rest = mark["title"].split(" on ", 1)
         column, found = rest.split(": ", 1)
@@ -482,7 +485,9 @@ def check_page(page, results, studies):
     assert all(b <= a + 1 for a, b in zip(levels, levels[1:])), f"a level of headings is left out: {levels}"
     assert not page["bare"] and not page["unlabelled"], page
     assert all(alt and width for alt, width in page["images"]), page["images"]
-    assert 1 <= len(page["answer"]) <= 3, page["answer"]
+    # One sentence for each kind of work, how sure or which meshes, and the worst warning.
+    assert 1 <= len(page["answer"]) <= 6, page["answer"]
+    assert all(len(sentence) < 260 for sentence in page["answer"]), page["answer"]
     if len(results["planned"]) == 1 and len(studies) == 1:
         [study] = studies
         assert len(page["images"]) == bool(study["mesh"].get("picture")), page["images"]
@@ -491,8 +496,9 @@ def check_page(page, results, studies):
         memory = [row for row in study["backends"] if row["bytes_per_vertex"]]
         for row in memory:
             text = next(cells for cells in page["summary"] if cells[0] == row["name"])
-            expected = f"{shown(row['bytes_per_vertex'])} B"
-            assert any(cell.split(" ", 1)[-1] == expected or cell == expected for cell in text), (text, expected)
+            each = row["bytes_per_vertex"] * study["mesh"]["vertices"] / study["mesh"]["faces"]
+            expected = f"{shown(row['bytes_per_vertex'])} B{shown(each)} B per "
+            assert any(expected in cell for cell in text), (text, expected)
 
 
 def check_meshes(browser, studies):

@@ -269,7 +269,12 @@ fn draw(folder: &Path, data: &Data<Line>) -> Result<(), Box<dyn Error>> {
             .collect(),
     };
     let title = "Time per edit over the faces of the mesh";
-    let svg = panels(title, 3, &shown.map(panel));
+    let svg = panels(
+        title,
+        "Each panel is an edit; a line is a structure.",
+        3,
+        &shown.map(panel),
+    );
     fs::write(folder.join("growth.svg"), svg)?;
     Ok(())
 }

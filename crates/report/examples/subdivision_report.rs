@@ -189,7 +189,12 @@ fn draw(folder: &Path, data: &Data<Line>) -> Result<(), Box<dyn Error>> {
     };
     let all = SCHEMES.into_iter().flat_map(|s| ways.map(|w| (s, w)));
     let all: Vec<Panel> = all.map(panel).collect();
-    let svg = panels("Nanoseconds per new face, by size", ways.len(), &all);
+    let svg = panels(
+        "Nanoseconds per new face, by size",
+        "Each panel is a scheme and a method; a line is a structure.",
+        ways.len(),
+        &all,
+    );
     fs::write(folder.join("growth.svg"), svg)?;
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Logarithmic axes, the curves of a chart, and places of dots and labels.
 
-use crate::canvas::{Canvas, Style, text_width};
+use crate::canvas::{Canvas, PointShape, Style, text_width};
 use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
 
 /// A logarithmic scale from values to pixels.
@@ -57,6 +57,7 @@ pub(crate) struct Curve {
     /// The text beside the last point.
     pub(crate) name: String,
     pub(crate) colour: &'static str,
+    pub(crate) shape: PointShape,
     pub(crate) points: Vec<CurvePoint>,
 }
 
@@ -76,13 +77,13 @@ impl Axes<'_> {
 
     pub(crate) fn draw(&self, canvas: &mut Canvas) {
         let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
-        let small = Style::new(11);
+        let small = Style::new(12);
         let mut free_from = f64::NEG_INFINITY;
         for tick in self.x.ticks() {
             let x = self.x.place(tick);
             canvas.line([x, top], [x, bottom], GRID_COLOUR, 1.0);
             let label = (self.x_format)(tick);
-            let half = text_width(&label, 11) / 2.0;
+            let half = text_width(&label, 12) / 2.0;
             if x - half > free_from {
                 canvas.text([x, bottom + 16.0], &label, small.middle());
                 free_from = x + half + 4.0;
@@ -116,26 +117,22 @@ impl Axes<'_> {
             canvas.polyline(&places, curve.colour, 1.5);
             for (point, &place) in curve.points.into_iter().zip(&places) {
                 canvas.mark(point.title, |canvas| {
-                    canvas.circle(place, 2.5, curve.colour);
+                    canvas.point(curve.shape, place, 3.0, curve.colour);
                     if point.is_sampled {
-                        canvas.circle(place, 1.5, BACKGROUND);
+                        canvas.point(curve.shape, place, 1.6, BACKGROUND);
                     }
                 });
             }
-            if let Some(&last) = places.last() {
-                names.push((curve.name, last, curve.colour));
+            if let Some(&[_, height]) = places.last() {
+                names.push((curve.name, height, curve.colour, curve.shape));
             }
         }
-        let heights: Vec<f64> = names.iter().map(|(_, [_, y], _)| *y).collect();
-        let labels = spread(&heights, 14.0, [top, bottom]);
-        for ((name, [x, y], colour), &label) in names.iter().zip(&labels) {
-            let (from, to) = ([x + 3.0, *y], [right + 12.0, label]);
-            // Dashed, because a line across the chart is no curve.
-            match right - x > 12.0 {
-                true => canvas.dashed(from, to, colour, 0.7),
-                false => canvas.line(from, to, colour, 0.7),
-            }
-            canvas.text([right + 15.0, label + 4.0], name, Style::new(12));
+        // At the height of the end of the curve, with the shape of its points in the place of a line that would lead there.
+        let heights: Vec<f64> = names.iter().map(|(_, height, ..)| *height).collect();
+        let labels = spread(&heights, 15.0, [top, bottom]);
+        for ((name, _, colour, shape), &label) in names.iter().zip(&labels) {
+            canvas.point(*shape, [right + 12.0, label], 3.5, colour);
+            canvas.text([right + 20.0, label + 4.0], name, Style::new(12));
         }
         names.len()
     }

@@ -71,6 +71,53 @@ pub(crate) enum Paint {
 /// Lengths of the dashes of a line and of the gaps between them.
 pub(crate) const DASHES: [f64; 2] = [4.0, 3.0];
 
+/// The shape of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PointShape {
+    Circle,
+    Square,
+    Up,
+    Diamond,
+    Down,
+    Cross,
+}
+
+impl PointShape {
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Circle,
+        Self::Square,
+        Self::Up,
+        Self::Diamond,
+        Self::Down,
+        Self::Cross,
+    ];
+
+    /// Returns the corners of the shape about the origin, for a circle of radius 1; none for a circle.
+    fn corners(self) -> &'static [[f64; 2]] {
+        match self {
+            Self::Circle => &[],
+            Self::Square => &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
+            Self::Up => &[[0.0, -1.1], [1.2, 1.1], [-1.2, 1.1]],
+            Self::Diamond => &[[0.0, -1.35], [1.35, 0.0], [0.0, 1.35], [-1.35, 0.0]],
+            Self::Down => &[[0.0, 1.1], [1.2, -1.1], [-1.2, -1.1]],
+            Self::Cross => &[
+                [-0.4, -1.2],
+                [0.4, -1.2],
+                [0.4, -0.4],
+                [1.2, -0.4],
+                [1.2, 0.4],
+                [0.4, 0.4],
+                [0.4, 1.2],
+                [-0.4, 1.2],
+                [-0.4, 0.4],
+                [-1.2, 0.4],
+                [-1.2, -0.4],
+                [-0.4, -0.4],
+            ],
+        }
+    }
+}
+
 /// How a text is placed and drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
@@ -196,6 +243,24 @@ impl Canvas {
             radius,
             paint,
         });
+    }
+
+    /// Draws a point of the size of a circle of `radius`.
+    pub(crate) fn point(
+        &mut self,
+        shape: PointShape,
+        [x, y]: [f64; 2],
+        radius: f64,
+        fill: &'static str,
+    ) {
+        let corners = shape.corners().iter();
+        let corners: Vec<[f64; 2]> = corners
+            .map(|[right, down]| [x + radius * right, y + radius * down])
+            .collect();
+        match corners.is_empty() {
+            true => self.circle([x, y], radius, fill),
+            false => self.filled(&corners, fill),
+        }
     }
 
     /// Draws a circle without a filling.

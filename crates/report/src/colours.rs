@@ -3,6 +3,8 @@
 //! Figures are drawn once, in fixed colours. On dark pages, a style sheet replaces these colours,
 //! because style rules override the presentation attributes of SVG.
 
+use crate::canvas::PointShape;
+
 pub(crate) const TEXT_COLOUR: &str = "#17181a";
 pub(crate) const BACKGROUND: &str = "#fdfdfc";
 pub(crate) const FAINT_COLOUR: &str = "#66686c";
@@ -21,31 +23,82 @@ const STRUCTURES: [(&str, (&str, &str)); 6] = [
 ];
 /// The name and the colours of relation tables.
 const RELATION_TABLES: (&str, (&str, &str)) = ("relation-tables", ("#b0618f", "#dd93bd"));
-/// Colours of all other columns on light pages and on dark pages.
-const OTHERS: [(&str, &str); 3] = [
-    ("#6a5acd", "#a094f0"),
-    ("#8c8a1e", "#c9c655"),
-    ("#555a60", "#b9bec4"),
+/// The beginnings of the names of libraries that are often compared, and their colours on light pages and on dark pages.
+const LIBRARIES: [(&str, (&str, &str)); 6] = [
+    ("lox", ("#6a5acd", "#a094f0")),
+    ("openmesh", ("#8c8a1e", "#c9c655")),
+    ("cgal", ("#8f3b46", "#d98490")),
+    ("pmp", ("#3d7a6e", "#74c4b4")),
+    ("opensubdiv", ("#7a4fa0", "#bd97e0")),
+    ("geometry-central", ("#7d5a33", "#c9a377")),
 ];
-/// Colours of the tables of a structure on light pages and on dark pages.
+/// Colours of all other columns on light pages and on dark pages.
+const OTHERS: [(&str, &str); 4] = [
+    ("#555a60", "#b9bec4"),
+    ("#a0522d", "#e09468"),
+    ("#4a6b1f", "#9cc464"),
+    ("#a03a78", "#e084bd"),
+];
+/// Colours of the tables of a structure on light pages and on dark pages. Names in the colour of the background are on
+/// them.
 const TABLES: [(&str, &str); 8] = [
     ("#1f6f9f", "#5fb0de"),
-    ("#e0a030", "#f2c063"),
-    ("#2f9f7f", "#5fd0b0"),
-    ("#c05f30", "#ef9060"),
-    ("#9f6f9f", "#d09fd0"),
-    ("#6f8f2f", "#a8cc60"),
+    ("#8a5a00", "#f2c063"),
+    ("#1b7a5e", "#5fd0b0"),
+    ("#b0501f", "#ef9060"),
+    ("#8d5a8d", "#d09fd0"),
+    ("#57751d", "#a8cc60"),
     ("#4f5f8f", "#8f9fd8"),
-    ("#8f8f8f", "#bcbcbc"),
+    ("#6b6b6b", "#bcbcbc"),
+];
+/// Colours of the orders of the elements on light pages and on dark pages.
+const ORDERS: [(&str, &str); 5] = [
+    ("#202a6b", "#aab4ff"),
+    ("#00838f", "#4dd0d8"),
+    ("#ad1457", "#f48fb1"),
+    ("#a87900", "#ffd54f"),
+    ("#5d4037", "#bcaaa4"),
 ];
 
-/// Returns the colour of the column `name`. A structure beyond [`STRUCTURES`], and an external
-/// program, gets one of [`OTHERS`], chosen by its name.
-pub(crate) fn column_colour(name: &str) -> &'static str {
-    let mut known = STRUCTURES.into_iter().chain([RELATION_TABLES]);
-    let known = known.find(|(column, _)| *column == name);
+/// Returns the place of the column `name` among all columns, which has its colour and its shape. The name of a structure
+/// beyond [`STRUCTURES`], and of an unknown program, chooses one of [`OTHERS`].
+fn place_of_column(name: &str) -> usize {
+    let known = STRUCTURES.iter().map(|(structure, _)| *structure == name);
+    let known = known.chain([name == RELATION_TABLES.0]);
+    let libraries = LIBRARIES.iter().map(|(start, _)| name.starts_with(start));
     let turn = name.bytes().map(usize::from).sum::<usize>() % OTHERS.len();
-    known.map_or(OTHERS[turn], |(_, colours)| colours).0
+    let other = STRUCTURES.len() + 1 + LIBRARIES.len() + turn;
+    known
+        .chain(libraries)
+        .position(|is_it| is_it)
+        .unwrap_or(other)
+}
+
+/// Returns the colours of all columns on light pages and on dark pages.
+fn columns() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let named = STRUCTURES
+        .into_iter()
+        .chain([RELATION_TABLES])
+        .chain(LIBRARIES);
+    named.map(|(_, colours)| colours).chain(OTHERS)
+}
+
+/// Returns the colour of the column `name`.
+pub(crate) fn column_colour(name: &str) -> &'static str {
+    let mut colours = columns().skip(place_of_column(name));
+    colours.next().map_or(TEXT_COLOUR, |(light, _)| light)
+}
+
+/// Returns the shape of the points of the column `name`. Neighbours in tables have different shapes, so that they are told
+/// apart in grey.
+pub(crate) fn column_shape(name: &str) -> PointShape {
+    PointShape::ALL[place_of_column(name) % PointShape::ALL.len()]
+}
+
+/// Returns the colour and the shape of the points of an order of the elements.
+pub(crate) fn order_mark(number: usize) -> (&'static str, PointShape) {
+    let shape = PointShape::ALL[number % PointShape::ALL.len()];
+    (ORDERS[number % ORDERS.len()].0, shape)
 }
 
 /// Returns the name of each structure with its colours on light pages and on dark pages, as `#rrggbb`.
@@ -68,13 +121,33 @@ pub(crate) fn dark_rules() -> String {
         (GRID_COLOUR, "#3a3b3e"),
         (INTERVAL_COLOUR, "#d0d0ce"),
     ];
-    let named = STRUCTURES.into_iter().chain([RELATION_TABLES]);
-    let columns = named.map(|(_, colours)| colours);
-    let pairs = page.into_iter().chain(columns).chain(OTHERS).chain(TABLES);
+    let pairs = page
+        .into_iter()
+        .chain(columns())
+        .chain(TABLES)
+        .chain(ORDERS);
     let rule = |(light, dark): (&str, &str)| {
         format!("[fill=\"{light}\"]{{fill:{dark}}}[stroke=\"{light}\"]{{stroke:{dark}}}")
     };
     pairs.map(rule).collect()
+}
+
+/// Returns the contrast of two colours, from 1 to 21, as the guidelines for accessible pages (WCAG 2.2, 2023) define it.
+#[cfg(test)]
+fn contrast(a: &str, b: &str) -> f64 {
+    let luminance = |colour: &str| {
+        let part = |from: usize| {
+            let value = u8::from_str_radix(&colour[from..from + 2], 16).expect("two digits");
+            let value = f64::from(value) / 255.0;
+            match value <= 0.04045 {
+                true => value / 12.92,
+                false => ((value + 0.055) / 1.055).powf(2.4),
+            }
+        };
+        0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5) + 0.05
+    };
+    let [a, b] = [a, b].map(luminance);
+    a.max(b) / a.min(b)
 }
 
 #[cfg(test)]
@@ -82,10 +155,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn letters_and_marks_are_seen_on_light_and_dark_pages() {
+        for (light, dark) in TABLES {
+            assert!(contrast(light, BACKGROUND) >= 4.5, "{light}");
+            assert!(contrast(dark, "#17181a") >= 4.5, "{dark}");
+        }
+        for (light, dark) in columns().chain(ORDERS) {
+            assert!(contrast(light, BACKGROUND) >= 2.4, "{light}");
+            assert!(contrast(dark, "#17181a") >= 4.5, "{dark}");
+        }
+    }
+
+    #[test]
     fn all_colours_are_different() {
-        let mut all: Vec<&str> = STRUCTURES.iter().map(|(_, (light, _))| *light).collect();
-        all.push(RELATION_TABLES.1.0);
-        all.extend(OTHERS.iter().map(|(light, _)| *light));
+        let mut all: Vec<&str> = columns().map(|(light, _)| light).collect();
+        all.extend(ORDERS.iter().map(|(light, _)| *light));
         all.extend([
             TEXT_COLOUR,
             BACKGROUND,
@@ -99,7 +183,16 @@ mod tests {
         all.dedup();
         assert_eq!(all.len(), count);
         assert!(all.iter().all(|hex| hex.len() == 7 && hex.starts_with('#')));
-        assert_ne!(column_colour("half-edge"), column_colour("lox"));
+        let libraries = [
+            "lox",
+            "openmesh",
+            "cgal-surface-mesh",
+            "pmp-library",
+            "half-edge",
+        ];
+        let mut colours = libraries.map(column_colour);
+        colours.sort_unstable();
+        assert!(colours.windows(2).all(|pair| pair[0] != pair[1]));
         let infos = sixfold::structure_infos();
         let names: Vec<&str> = infos.iter().map(|info| info.name).collect();
         assert_eq!(

@@ -28,6 +28,16 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// Returns the picture as an SVG file, which follows the dark mode of the reader.
+    pub fn svg(&self) -> String {
+        self.picture.svg(&self.caption)
+    }
+
+    /// Returns the picture as an SVG file in the colours of the light mode, for paper.
+    pub fn light_svg(&self) -> String {
+        self.picture.light_svg(&self.caption)
+    }
+
     pub(crate) fn with_csv(self, csv: String) -> Self {
         Self { csv, ..self }
     }

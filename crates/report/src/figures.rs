@@ -51,7 +51,7 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
     page.machines = machines(results);
     page.methods = methods::paragraphs(results);
     if results.is_interrupted() {
-        page.warnings.push(INTERRUPTED.to_owned());
+        page.warnings.insert(0, INTERRUPTED.to_owned());
     }
     if runs(results).any(|run| run.environment.profile == "debug") {
         page.warnings.insert(0, DEBUG.to_owned());
@@ -79,6 +79,10 @@ fn set_sources(page: &mut ReportPage, results: &Results) {
     };
     let studies = of_kind("study");
     set(&mut page.figures, &studies);
+    set(&mut page.folded, &studies);
+    if !studies.is_empty() {
+        page.measured = source::line(&studies);
+    }
     for (section, study) in page.meshes.iter_mut().zip(&studies) {
         set(&mut section.figures, &[study]);
     }
@@ -91,16 +95,14 @@ fn set_sources(page: &mut ReportPage, results: &Results) {
 /// Returns the page of one mesh.
 fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
     let matrix = Matrix::of_study(study);
-    let answer = [
-        summary::fastest_of_study(study),
-        study.how_sure(),
-        summary::turning_points(study, results),
-    ];
+    let mut answer = summary::fastest_of_study(study);
+    answer.extend(summary::how_sure(study));
     ReportPage {
         title: format!("Mesh data structures on {}", file_name(&study.mesh.name)),
         facts: facts(&study.mesh),
         picture: mesh_picture(&study.mesh),
-        answer: answer.into_iter().flatten().collect(),
+        answer,
+        conditions: summary::conditions(study, results),
         summary: Some(Summary::of_study(study, results)),
         sentences: study.notes.clone(),
         warnings: unsteady(study, results)
@@ -108,6 +110,7 @@ fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
             .chain(study.warnings.iter().cloned())
             .collect(),
         figures: study_figures(study, &matrix, command),
+        folded: rankings(study, &matrix, command).into_iter().collect(),
         operations: matrix,
         labs: labs(results, command),
         ..ReportPage::default()
@@ -357,12 +360,17 @@ fn numbered_id(name: &str, place: usize) -> String {
 fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> {
     let command = recorded_command(&study.run, command);
     let figures = [
-        ranking::from_matrix(matrix, "", command).map(|figure| figure.with_csv(rows::study(study))),
         heat_map_of(study, matrix, "", command),
         memory::from_study(study, "", command),
         break_even::from_study(study, "", command),
     ];
     figures.into_iter().flatten().collect()
+}
+
+fn rankings(study: &Report, matrix: &Matrix, command: &str) -> Option<Figure> {
+    let command = recorded_command(&study.run, command);
+    let figure = ranking::from_matrix(matrix, "", command)?;
+    Some(figure.with_csv(rows::study(study)))
 }
 
 fn heat_map_of(study: &Report, matrix: &Matrix, id_prefix: &str, command: &str) -> Option<Figure> {

@@ -3,18 +3,22 @@
 mod tables;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sixfold_results::numbers::counted;
 
 use crate::colours::dark_rules;
 use crate::figure::{Figure, TitledTable};
 use crate::{HOW_TO_USE, ReportPage, Section};
 use tables::{operations_table, plain_table, summary_table};
 
+/// A line in the head of every page.
+pub const GENERATOR: &str = "<meta name=\"generator\" content=\"Sixfold\">";
+
 const STYLE: &str = include_str!("html/style.css");
 /// The script of the table of operations. Its texts say 95 % for the confidence of the intervals.
 const SCRIPT: &str = include_str!("html/script.js");
 
-/// Width of a picture that scrolls on small screens, in pixels. Smaller pictures shrink.
-const WIDE: f64 = 400.0;
+/// Tables with more backends are printed across.
+const MOST_COLUMNS: usize = 8;
 
 /// Number of sentences of a lab that are not folded.
 const SHOWN: usize = 3;
@@ -24,18 +28,23 @@ impl ReportPage {
     pub fn html(&self) -> String {
         let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
         let script = SCRIPT.replace("95 %", &self.operations.confidence.to_string());
+        let paper = match self.operations.backends.len() > MOST_COLUMNS {
+            true => "landscape",
+            false => "portrait",
+        };
         let page = html! {
             (DOCTYPE)
             html lang="en" {
                 head {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width,initial-scale=1";
+                    (PreEscaped(GENERATOR))
                     // Prevents browsers from requesting a favicon.
                     link rel="icon" href="data:,";
                     title { (self.title) }
-                    style { (PreEscaped(STYLE)) (PreEscaped(dark)) }
+                    style { (PreEscaped(STYLE)) (PreEscaped(dark)) (PreEscaped(format!("@page{{size:A4 {paper}}}"))) }
                 }
-                body {
+                body data-paper=(paper) {
                     a.skip href="#answer" { "Skip to the answer" }
                     (self.contents())
                     main {
@@ -48,12 +57,13 @@ impl ReportPage {
                             }
                         }
                         @for figure in &self.figures { (figure_section(figure, "h2", None)) }
+                        @for figure in &self.folded { (folded_figure(figure)) }
                         @for table in &self.appendix { (table_section(table, "h2")) }
                         @for (place, lab) in self.labs.iter().enumerate() { (lab_section(place, lab)) }
                         @if !self.meshes.is_empty() {
                             section id="meshes" {
                                 (heading("h2", "All meshes", "meshes"))
-                                (plain_table(&self.overview))
+                                (plain_table(&self.overview, "The meshes; each name leads to the results of the mesh."))
                                 @for section in &self.meshes { (mesh_section(section)) }
                             }
                         }
@@ -71,6 +81,7 @@ impl ReportPage {
         let figures = self
             .figures
             .iter()
+            .chain(&self.folded)
             .map(|figure| (figure.id.clone(), short(&figure.title)));
         let labs = self.labs.iter().enumerate();
         let labs = labs.map(|(place, lab)| (lab_id(place), short(&lab.title)));
@@ -96,6 +107,7 @@ impl ReportPage {
             header id="answer" {
                 h1 { (self.title) }
                 @if !self.facts.is_empty() { p.faint { (self.facts) } }
+                @if !self.measured.is_empty() { p.faint { (self.measured) } }
                 div.first {
                     @if let Some(picture) = &self.picture {
                         @let link = format!("data:image/png;base64,{}", picture.png);
@@ -104,10 +116,14 @@ impl ReportPage {
                             figcaption { (picture.label) }
                         }
                     }
-                    div.answer { @for sentence in &self.answer { p { (lead(sentence)) } } }
+                    div.answer {
+                        @for sentence in &self.answer { p { (lead(sentence)) } }
+                        @if let Some(worst) = self.warnings.first() { p.warning { b { "⚠ " } (prose(worst)) } }
+                    }
                 }
                 @if let Some(summary) = &self.summary { (summary_table(summary)) }
-                (self.warnings())
+                @for sentence in &self.conditions { p { (lead(sentence)) } }
+                (self.more_warnings())
                 @if !self.failures.is_empty() {
                     h2 { "Not studied" }
                     ul {
@@ -125,17 +141,14 @@ impl ReportPage {
         }
     }
 
-    /// Returns the warnings, folded into one line.
-    fn warnings(&self) -> Markup {
+    /// Returns the warnings after the first, folded into one line.
+    fn more_warnings(&self) -> Markup {
+        let more = self.warnings.get(1..).unwrap_or_default();
         html! {
-            @match &self.warnings[..] {
-                [] => {}
-                [warning] => p.warning { b { "⚠ " } (prose(warning)) },
-                warnings => {
-                    details.warning {
-                        summary { b { "⚠ " (warnings.len()) " warnings" } ": " (warnings[0]) }
-                        (list(warnings))
-                    }
+            @if !more.is_empty() {
+                details.warnings {
+                    summary { b { "⚠ " (counted(more.len(), "more warning", "more warnings")) } }
+                    (list(more))
                 }
             }
         }
@@ -237,8 +250,7 @@ fn mesh_section(section: &Section) -> Markup {
                 @for figure in &section.figures { (figure_section(figure, "h3", Some(&section.title))) }
                 @for table in &section.tables {
                     h4 { (table.title) }
-                    p.faint { (table.caption) }
-                    (plain_table(&table.table))
+                    (plain_table(&table.table, &table.caption))
                 }
             }
         }
@@ -247,17 +259,38 @@ fn mesh_section(section: &Section) -> Markup {
 
 /// Returns a figure under a heading. `mesh` is the name of the mesh if the page has several meshes.
 fn figure_section(figure: &Figure, level: &str, mesh: Option<&str>) -> Markup {
-    let class = match figure.picture.panel_count() {
-        1 if figure.picture.width() > WIDE => "wide",
-        1 => "narrow",
-        _ => "panels",
-    };
     html! {
         section id=(figure.id) {
             (heading(level, &figure.title, &figure.id))
+            (figure_with_numbers(figure, mesh))
+        }
+    }
+}
+
+/// Returns a figure under a heading that is folded at first, and on paper.
+fn folded_figure(figure: &Figure) -> Markup {
+    html! {
+        section id=(figure.id) {
+            (heading("h2", &figure.title, &figure.id))
+            details.folded {
+                summary { "Show the figure: the numbers of the table of all operations, each operation in a panel" }
+                (figure_with_numbers(figure, None))
+            }
+        }
+    }
+}
+
+/// Returns a figure, its numbers and its command. `mesh` is the name of the mesh if the page has several meshes.
+fn figure_with_numbers(figure: &Figure, mesh: Option<&str>) -> Markup {
+    let class = match figure.picture.panel_count() {
+        1 => "scroll wide",
+        _ => "scroll wide panels",
+    };
+    let name = format!("Figure: {}", figure.title);
+    html! {
             figure data-figure=(figure.id) data-mesh=[mesh] {
-                div class=(class) style={ "--panel:" (figure.picture.width()) "px" } {
-                    (figure.picture.markup())
+                div class=(class) tabindex="0" role="region" aria-label=(name) style={ "--panel:" (figure.picture.width()) "px" } {
+                    (figure.picture.markup(&figure.caption))
                 }
                 figcaption {
                     (prose(&figure.caption))
@@ -266,10 +299,9 @@ fn figure_section(figure: &Figure, level: &str, mesh: Option<&str>) -> Markup {
             }
             details {
                 summary { "Numbers and command" }
-                (plain_table(&figure.table))
+                (plain_table(&figure.table, &format!("The numbers of the figure “{}”.", figure.title)))
                 pre { code { (figure.command) } }
             }
-        }
     }
 }
 
@@ -282,11 +314,10 @@ fn table_section(table: &TitledTable, level: &str) -> Markup {
     html! {
         section id=(id) {
             (heading(level, &table.title, &id))
-            p.faint { (prose(&table.caption)) }
             @if table.table.rows.len() > UNFOLDED {
-                details { summary { "Show the table" } (plain_table(&table.table)) }
+                details { summary { "Show the table" } (plain_table(&table.table, &table.caption)) }
             } @else {
-                (plain_table(&table.table))
+                (plain_table(&table.table, &table.caption))
             }
         }
     }

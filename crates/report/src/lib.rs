@@ -42,6 +42,7 @@ pub use colours::structure_colours;
 pub use data::date;
 pub use figure::{Figure, Table, TitledTable};
 pub use figures::machine;
+pub use html::GENERATOR;
 pub use panels::{Panel, panels};
 pub use papers::{NoPdf, PaperFile, PaperFiles};
 pub use pdf::PdfError;
@@ -57,8 +58,12 @@ pub struct ReportPage {
     pub facts: String,
     /// The picture of the mesh; `None` if the document has no picture.
     pub picture: Option<MeshPicture>,
-    /// The answer in at most three sentences.
+    /// How the studies were measured, in one line: samples, budget, date, machine, version.
+    pub measured: String,
+    /// The answer: a sentence for each kind of work, and how sure it is.
     pub answer: Vec<String>,
+    /// Sentences that follow the table of the first screen: what would change the answer.
+    pub conditions: Vec<String>,
     /// The structures by kind of work; `None` without a study.
     pub summary: Option<Summary>,
     /// The command that reproduces the report.
@@ -77,6 +82,8 @@ pub struct ReportPage {
     /// Figures about all meshes together. If there is only one mesh, the figures are about this
     /// mesh.
     pub figures: Vec<Figure>,
+    /// Figures that show the numbers of others in another way. They follow the figures, folded.
+    pub folded: Vec<Figure>,
     /// Tables that follow the figures, with all numbers.
     pub appendix: Vec<TitledTable>,
     /// All operations on all backends.
@@ -139,6 +146,7 @@ impl ReportPage {
     pub fn all_figures(&self) -> impl Iterator<Item = &Figure> {
         let sections = self.labs.iter().chain(&self.meshes);
         let section_figures = sections.flat_map(|section| &section.figures);
-        self.figures.iter().chain(section_figures)
+        let own = self.figures.iter().chain(&self.folded);
+        own.chain(section_figures)
     }
 }

@@ -31,12 +31,14 @@ impl ReportPage {
         if !self.facts.is_empty() {
             let _ = writeln!(text, "{}\n", escape(&self.facts));
         }
-        for sentence in &self.answer {
-            let _ = writeln!(text, "{}\n", escape(sentence));
+        if !self.measured.is_empty() {
+            let _ = writeln!(text, "{}\n", escape(&self.measured));
         }
+        write_list(&mut text, &self.answer);
         if let Some(summary) = &self.summary {
             write_table(&mut text, &summary.table());
         }
+        write_list(&mut text, &self.conditions);
         write_list(&mut text, &self.sentences);
         for warning in &self.warnings {
             let _ = writeln!(text, "> {}\n", escape(warning));
@@ -55,7 +57,7 @@ impl ReportPage {
         for table in &self.tables {
             write_titled_table(&mut text, table, "##");
         }
-        for figure in &self.figures {
+        for figure in self.figures.iter().chain(&self.folded) {
             write_figure(&mut text, figure, "##", with_pictures);
         }
         for table in &self.appendix {

@@ -3,7 +3,7 @@
 use crate::Picture;
 use crate::axes::{Axes, Curve, CurvePoint, LogScale};
 use crate::canvas::{Canvas, Style};
-use crate::colours::column_colour;
+use crate::colours::{column_colour, column_shape};
 use crate::figure::count_tick;
 
 /// Size of a panel, and the places of its axes.
@@ -25,8 +25,8 @@ pub struct Panel {
 }
 
 /// Draws `panels` as one SVG. The SVG has `columns` panels side by side in each row. All panels have the same
-/// axes, which contain all points with positive coordinates.
-pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
+/// axes, which contain all points with positive coordinates. `description` says what the picture shows.
+pub fn panels(title: &str, description: &str, columns: usize, panels: &[Panel]) -> String {
     let [x, y] = [0, 1].map(|axis| {
         let points = panels.iter().flat_map(|panel| &panel.lines);
         let points = points.flat_map(|(_, points)| points);
@@ -42,7 +42,7 @@ pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
         }
     });
     let drawn = panels.iter().map(|panel| draw(panel, x, y)).collect();
-    Picture::grid(title, columns, drawn).svg()
+    Picture::grid(title, columns, drawn).svg(description)
 }
 
 /// Draws a panel. `x` and `y` have the least and the largest value of an axis.
@@ -76,6 +76,7 @@ fn draw(panel: &Panel, x: [f64; 2], y: [f64; 2]) -> Canvas {
         Curve {
             name: (*name).into(),
             colour: column_colour(name),
+            shape: column_shape(name),
             points: points.iter().map(point).collect(),
         }
     });

@@ -77,7 +77,8 @@ impl ReportPage {
         for figure in self.all_figures() {
             let id = &figure.id;
             let files = &mut paper.files;
-            files.push(PaperFile::new(format!("{id}.svg"), figure.picture.svg()));
+            let svg = figure.light_svg();
+            files.push(PaperFile::new(format!("{id}.svg"), svg));
             match figure.picture.pdf() {
                 Ok(pdf) => files.push(PaperFile::new(format!("{id}.pdf"), pdf)),
                 Err(cause) => paper.missing.push(NoPdf {
@@ -99,7 +100,7 @@ impl ReportPage {
         ];
         let figures = self.all_figures().map(|figure| {
             let name = format!("figures/{}.svg", figure.id);
-            PaperFile::new(name, figure.picture.svg())
+            PaperFile::new(name, figure.svg())
         });
         pages.into_iter().chain(figures).collect()
     }

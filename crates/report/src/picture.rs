@@ -7,6 +7,7 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::canvas::Canvas;
 use crate::colours::dark_rules;
+use crate::svg::Words;
 use crate::{PdfError, pdf, svg};
 
 /// Space between panels in a file, in pixels.
@@ -37,13 +38,36 @@ impl Picture {
         }
     }
 
-    /// Returns the picture as an SVG file, which follows the dark mode of the reader.
-    pub fn svg(&self) -> String {
+    /// Returns the picture as an SVG file, which follows the dark mode of the reader. `description` says what the picture
+    /// shows.
+    pub(crate) fn svg(&self, description: &str) -> String {
         let style = format!(
             "<style>svg{{max-width:100%;height:auto}}@media (prefers-color-scheme:dark){{{}}}</style>",
             dark_rules()
         );
-        svg::element(self.size(), &self.placed(), &self.label, &style)
+        svg::element(
+            self.size(),
+            &self.placed(),
+            Some(self.words(description)),
+            &style,
+        )
+    }
+
+    /// Returns the picture as an SVG file in the colours of the light mode, for paper.
+    pub(crate) fn light_svg(&self, description: &str) -> String {
+        svg::element(
+            self.size(),
+            &self.placed(),
+            Some(self.words(description)),
+            "",
+        )
+    }
+
+    fn words<'w>(&'w self, description: &'w str) -> Words<'w> {
+        Words {
+            title: &self.label,
+            description,
+        }
     }
 
     /// Returns the picture as a PDF file of one page, in the colours of the light mode. One pixel is one
@@ -65,12 +89,13 @@ impl Picture {
         self.largest(0)
     }
 
-    /// Returns the panels as SVG elements without style rules, for a page that has these rules.
-    pub(crate) fn markup(&self) -> Markup {
+    /// Returns the panels as SVG elements without style rules, for a page that has these rules. Screen readers read the
+    /// words of the first.
+    pub(crate) fn markup(&self, description: &str) -> Markup {
         html! {
             @for (number, panel) in self.panels.iter().enumerate() {
-                @let label = if number == 0 { self.label.as_str() } else { "" };
-                (PreEscaped(svg::element(panel.size, &[([0.0, 0.0], panel)], label, "")))
+                @let words = (number == 0).then(|| self.words(description));
+                (PreEscaped(svg::element(panel.size, &[([0.0, 0.0], panel)], words, "")))
             }
         }
     }

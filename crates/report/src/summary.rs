@@ -1,4 +1,4 @@
-//! The first screen: the answer in at most three sentences, and a table of the structures by kind of
+//! The first screen: the answer in one sentence for each kind of work, and a table of the structures by kind of
 //! work.
 
 use crate::figure::Table;
@@ -8,7 +8,7 @@ use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, time
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{
     BackendReport, OrdersReport, Overall, Pool, Purpose, Report, ResultRow, Results, Standing,
-    leaders,
+    leaders, next_best,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -47,8 +47,13 @@ pub struct SummaryRow {
 pub struct SummaryFigure {
     /// The figure as text, such as `1.31 ×`.
     pub text: String,
-    /// Length of the bar, from 0 for the best to 1 for 10 times the best and more, on a logarithmic scale.
+    /// The figure in another unit, such as `18.0 B per triangle`.
+    pub detail: Option<String>,
+    /// Length of the bar: of a time from 0 for the best to 1 for 10 times the best and more, on a logarithmic scale; of
+    /// memory the share of the largest.
     pub share: f64,
+    /// Whether the bar would be longer to scale.
+    pub is_cut: bool,
     /// Whether the figure is the best, or shares the first place.
     pub rank: Rank,
 }
@@ -71,7 +76,9 @@ impl SummaryFigure {
     fn new(value: f64, best: f64, rank: Rank, text: String) -> Self {
         Self {
             text,
+            detail: None,
             share: bar_length(value / best),
+            is_cut: value >= 10.0 * best,
             rank,
         }
     }
@@ -125,17 +132,43 @@ struct Work<'s> {
 struct Memory {
     backend: String,
     bytes_per_vertex: f64,
+    bytes_per_face: f64,
+    /// `triangle` if all faces are triangles, otherwise `face`.
+    face: &'static str,
+}
+
+impl Memory {
+    /// Returns the mean over `studies`; `None` if `backend` has no size in one of them.
+    fn of(backend: &str, studies: &[&Report]) -> Option<Self> {
+        let each = studies.iter().map(|study| {
+            let bytes = study.backend(backend)?.bytes_per_vertex?;
+            let facts = &study.mesh.facts;
+            let faces = facts.faces.max(1) as f64;
+            Some([bytes, bytes * facts.vertices as f64 / faces])
+        });
+        let each: Option<Vec<[f64; 2]>> = each.collect();
+        let each = each.filter(|each| !each.is_empty())?;
+        let mean = |unit: usize| each.iter().map(|one| one[unit]).sum::<f64>() / each.len() as f64;
+        let is_triangles = |study: &&Report| {
+            let degrees = study.mesh.facts.face_degree.as_ref();
+            degrees.is_some_and(|degrees| degrees.max == 3)
+        };
+        Some(Self {
+            backend: backend.to_owned(),
+            bytes_per_vertex: mean(0),
+            bytes_per_face: mean(1),
+            face: match studies.iter().all(is_triangles) {
+                true => "triangle",
+                false => "face",
+            },
+        })
+    }
 }
 
 impl Summary {
     pub(crate) fn of_study(study: &Report, results: &Results) -> Self {
-        let bytes = |backend: &BackendReport| {
-            Some(Memory {
-                backend: backend.name.clone(),
-                bytes_per_vertex: backend.bytes_per_vertex?,
-            })
-        };
-        let memory: Vec<Memory> = study.backends.iter().filter_map(bytes).collect();
+        let of = |backend: &BackendReport| Memory::of(&backend.name, &[study]);
+        let memory: Vec<Memory> = study.backends.iter().filter_map(of).collect();
         let orders = orders_of(study, results);
         let backends: Vec<(&str, Option<&str>)> = study
             .backends
@@ -166,21 +199,8 @@ impl Summary {
             .iter()
             .filter(|study| all.meshes.contains(&study.mesh.name));
         let studies: Vec<&Report> = studies.copied().collect();
-        let bytes = |name: &String| {
-            let each = studies.iter().filter_map(|study| {
-                let mut backends = study
-                    .backends
-                    .iter()
-                    .filter(|backend| backend.name == *name);
-                backends.next()?.bytes_per_vertex
-            });
-            let each: Vec<f64> = each.collect();
-            (each.len() == studies.len() && !each.is_empty()).then(|| Memory {
-                backend: name.clone(),
-                bytes_per_vertex: each.iter().sum::<f64>() / each.len() as f64,
-            })
-        };
-        let memory: Vec<Memory> = pool.compared.iter().filter_map(bytes).collect();
+        let of = |name: &String| Memory::of(name, &studies);
+        let memory: Vec<Memory> = pool.compared.iter().filter_map(of).collect();
         let work = Work {
             overall: all.overall.clone(),
             is_decided: &|purpose| {
@@ -222,7 +242,7 @@ impl Summary {
                 work_figure(rows, decided, backend)
             });
             if purpose == Purpose::Build {
-                let about = "Bytes held for each vertex, with spare capacity";
+                let about = "Bytes of all tables, with spare capacity, divided by the number of vertices; below, by the number of faces";
                 let column = ["memory", about, "bytes per vertex"];
                 summary.column(column, |backend| memory_figure(memory, backend));
             }
@@ -301,10 +321,8 @@ fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<Summary
 }
 
 fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
-    let own = memory
-        .iter()
-        .find(|memory| memory.backend == backend)?
-        .bytes_per_vertex;
+    let held = memory.iter().find(|memory| memory.backend == backend)?;
+    let own = held.bytes_per_vertex;
     let least = memory
         .iter()
         .map(|memory| memory.bytes_per_vertex)
@@ -318,12 +336,16 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
         true => Rank::Shared,
         false => Rank::Other,
     };
-    Some(SummaryFigure::new(
-        own,
-        least,
-        rank,
-        format!("{} B", figure(own)),
-    ))
+    let most = memory.iter().map(|memory| memory.bytes_per_vertex);
+    let most = most.fold(own, f64::max);
+    let detail = format!("{} B per {}", figure(held.bytes_per_face), held.face);
+    Some(SummaryFigure {
+        detail: Some(detail),
+        // Bytes are compared from 0; the full length is the largest structure.
+        share: own / most.max(f64::MIN_POSITIVE),
+        is_cut: false,
+        ..SummaryFigure::new(own, least, rank, format!("{} B", figure(own)))
+    })
 }
 
 /// Returns the largest effect of the order on `backend`, as the quotient of two shown times, with its
@@ -346,19 +368,24 @@ fn order_figure(orders: &OrdersReport, backend: &str) -> Option<SummaryFigure> {
     Some(SummaryFigure::new(own, 1.0, Rank::Other, times(own)))
 }
 
-/// Returns the fastest backends of each kind of work of a study, and the next one. If the samples are too
-/// few for one of them, the sentence says so, and which budget gives enough.
-pub(crate) fn fastest_of_study(study: &Report) -> Option<String> {
+/// Returns a sentence for each kind of work of a study: the fastest backends, and the next one with the interval of its
+/// ratio.
+pub(crate) fn fastest_of_study(study: &Report) -> Vec<String> {
     let overall = study.overall();
-    let parts = fastest(&overall, &|row| row.backend.clone())?;
+    let is_provisional = |purpose| !study.is_decided(purpose);
+    let name = |row: &Overall| row.backend.clone();
+    fastest(&overall, &name, &is_provisional)
+}
+
+/// Says how sure the answer of a study is, and which budget gives enough samples if there are too few.
+pub(crate) fn how_sure(study: &Report) -> Option<String> {
+    let sure = study.how_sure()?;
+    let overall = study.overall();
     let unsure = overall.iter().any(|row| !study.is_decided(row.purpose));
-    Some(match (unsure, enough(study)) {
-        (false, _) => format!("Fastest: {parts}."),
-        (true, None) => format!("Fastest (provisional, too few samples): {parts}."),
-        (true, Some(budget)) => {
-            format!("Fastest (provisional, too few samples; {budget}): {parts}.")
-        }
-    })
+    match enough(study).filter(|_| unsure) {
+        Some(budget) => Some(format!("{} {budget}.", sure)),
+        None => Some(sure),
+    }
 }
 
 /// Returns what gives about enough samples for a winner; `None` if this is unknown.
@@ -374,57 +401,64 @@ fn enough(study: &Report) -> Option<String> {
     let fewest = open.map(known).min()?.max(1);
     match (settings.rounds, settings.launches) {
         (Some(_), Some(_)) => None,
-        (Some(_), None) => Some(format!("--rounds {FEWEST_OF_A_WINNER} gives enough")),
+        (Some(_), None) => Some(format!("Enough samples need --rounds {FEWEST_OF_A_WINNER}")),
         (None, launches) => {
             let needed = launches.map_or(FEWEST_OF_A_WINNER, |_| FEWEST_LAUNCHES);
             // Half as much again, because the first runs also find out how long the others take.
             let factor = 1.5 * needed as f64 / fewest as f64;
-            Some(format!("{} times the --budget gives enough", factor.ceil()))
+            Some(format!(
+                "Enough samples need {} times the --budget",
+                factor.ceil()
+            ))
         }
     }
 }
 
-/// Returns the fastest backends of each kind of work over several meshes, with the number of meshes on which
+/// Returns a sentence for each kind of work over several meshes: the fastest backends, with the number of meshes on which
 /// they are the fastest, and the next one.
-pub(crate) fn fastest_of_many(overall: &[Overall]) -> Option<String> {
-    let parts = fastest(overall, &wins);
-    let unsure = overall.iter().map(|row| row.undecided).max().unwrap_or(0);
-    let unsure = match unsure {
-        0 => String::new(),
-        _ => format!(
-            " (provisional, {} without enough samples)",
-            counted(unsure, "mesh", "meshes")
-        ),
+pub(crate) fn fastest_of_many(overall: &[Overall]) -> Vec<String> {
+    let is_provisional = |purpose: Purpose| {
+        let rows = purpose.rows(overall);
+        rows.iter().any(|row| row.undecided > 0)
     };
-    Some(format!("Fastest on average{unsure}: {}.", parts?))
+    let name = |row: &Overall| match row.undecided == row.meshes {
+        true => row.backend.clone(),
+        false => wins(row).replacen(" (", " (fastest on ", 1),
+    };
+    fastest(overall, &name, &is_provisional)
 }
 
-/// Returns a backend with the number of decided meshes on which it is the fastest: `half-edge (7 of 9, shared on 1)`.
+/// Returns a backend with the number of meshes on which it is the fastest: `half-edge (7 of 9, shared on 1)`.
 pub(crate) fn wins(row: &Overall) -> String {
     if row.undecided == row.meshes {
         return format!("{} (too few samples)", row.backend);
     }
-    let tied = match row.tied {
-        0 => String::new(),
-        tied => format!(", shared on {}", grouped(tied)),
-    };
+    let others = [(row.tied, "shared on"), (row.undecided, "undecided on")];
+    let others = others.into_iter().filter(|(count, _)| *count > 0);
+    let others: String = others
+        .map(|(count, what)| format!(", {what} {}", grouped(count)))
+        .collect();
     format!(
-        "{} ({} of {}{tied})",
+        "{} ({} of {}{others})",
         row.backend,
         grouped(row.best),
-        grouped(row.meshes - row.undecided)
+        grouped(row.meshes)
     )
 }
 
-/// Returns the fastest backends of each kind of work, as `name` names them, and the next one.
-fn fastest(overall: &[Overall], name: &dyn Fn(&Overall) -> String) -> Option<String> {
+/// Returns a sentence for each kind of work: the fastest backends, as `name` names them, and the next one.
+fn fastest(
+    overall: &[Overall],
+    name: &dyn Fn(&Overall) -> String,
+    is_provisional: &dyn Fn(Purpose) -> bool,
+) -> Vec<String> {
     const ORDER: [Purpose; 4] = [
         Purpose::Query,
         Purpose::Edit,
         Purpose::Subdivide,
         Purpose::Build,
     ];
-    let parts = ORDER.iter().filter_map(|purpose| {
+    let sentences = ORDER.into_iter().filter_map(|purpose| {
         let rows = purpose.rows(overall);
         let best = leaders(rows);
         if rows.len() < 2 || best.is_empty() {
@@ -434,22 +468,32 @@ fn fastest(overall: &[Overall], name: &dyn Fn(&Overall) -> String) -> Option<Str
             true => "no clear difference".to_owned(),
             false => best.iter().map(name).collect::<Vec<_>>().join(" or "),
         };
-        let others = &rows[best.len()..];
-        let next = others
-            .first()
-            .map(|next| match next.bound && others.len() > 1 {
-                true => format!(", the others {}", next.times(&rows[0])),
-                false => format!(", next {} {}", next.backend, next.times(&rows[0])),
-            });
-        Some(format!(
-            "{} {names}{}",
-            purpose.of_choice(),
-            next.unwrap_or_default()
-        ))
+        let provisional = match is_provisional(purpose) {
+            true => " (provisional, too few samples)",
+            false => "",
+        };
+        let next = next_best(rows).map_or(String::new(), |(next, ratio)| {
+            let row = &rows[best.len()];
+            let interval = row.interval_to_first().map(|ends| ends.map(figure));
+            let interval = interval.filter(|[low, high]| low != high);
+            let interval =
+                interval.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
+            format!("; {next} {ratio}{interval}")
+        });
+        Some(format!("{}{provisional}: {names}{next}.", purpose.title()))
     });
-    let parts: Vec<String> = parts.collect();
-    (!parts.is_empty()).then(|| parts.join("; "))
+    sentences.collect()
 }
+
+/// Returns what follows the table of the first screen: what would change the answer, and the backend that a study does
+/// not measure.
+pub(crate) fn conditions(study: &Report, results: &Results) -> Vec<String> {
+    let points = turning_points(study, results);
+    points.into_iter().chain([TABLES.to_owned()]).collect()
+}
+
+const TABLES: &str = "Not in a study: flat tables of only the relations that a program queries are often faster than every \
+                      structure. `sixfold pick` measures them with your workload.";
 
 /// Returns what would change the answer: tight memory, few repetitions, a single operation, another order.
 pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String> {

@@ -7,12 +7,19 @@ use maud::Escaper;
 use crate::canvas::{Anchor, Canvas, DASHES, Paint, Shape, Style};
 use crate::colours::{BACKGROUND, TEXT_COLOUR};
 
+/// What a picture shows, for screen readers and search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Words<'w> {
+    pub(crate) title: &'w str,
+    pub(crate) description: &'w str,
+}
+
 /// Returns an SVG element of the given size with `panels`, each moved to its place. `style` has the style
-/// rules of the element. Without a label, screen readers skip the element.
+/// rules of the element. Without words, screen readers skip the element.
 pub(crate) fn element(
     [width, height]: [f64; 2],
     panels: &[([f64; 2], &Canvas)],
-    label: &str,
+    words: Option<Words<'_>>,
     style: &str,
 ) -> String {
     let mut svg = String::new();
@@ -24,12 +31,16 @@ pub(crate) fn element(
              font-family=\"system-ui, sans-serif\" fill=\"{TEXT_COLOUR}\" "
         ),
     );
-    match label {
-        "" => svg += "aria-hidden=\"true\">",
-        label => {
+    match words {
+        None => svg += "aria-hidden=\"true\">",
+        Some(Words { title, description }) => {
             svg += "role=\"img\" aria-label=\"";
-            write_escaped(&mut svg, label);
-            svg += "\">";
+            write_escaped(&mut svg, title);
+            svg += "\"><title>";
+            write_escaped(&mut svg, title);
+            svg += "</title><desc>";
+            write_escaped(&mut svg, description);
+            svg += "</desc>";
         }
     }
     svg += style;
@@ -206,7 +217,11 @@ mod tests {
         canvas.text([1.0, 2.0], "a < b", style);
         canvas.text([1.0, 2.0], "c", Style::new(11).colour("#66686c"));
         let panels = [([0.0, 0.0], &canvas), ([52.0, 0.0], &canvas)];
-        let svg = element([92.0, 30.5], &panels, "\"label\"", "<style></style>");
+        let words = Words {
+            title: "\"title\"",
+            description: "<what>",
+        };
+        let svg = element([92.0, 30.5], &panels, Some(words), "<style></style>");
         let shapes = "<g><title>&lt;&amp;&gt;</title>\
             <rect x=\"0.33\" y=\"0\" width=\"3\" height=\"4\" fill=\"#ff0080\"/>\
             <path d=\"M5 6L7 8.13\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.5\" stroke-dasharray=\"4 3\"/></g>\
@@ -216,11 +231,11 @@ mod tests {
             <text x=\"1\" y=\"2\" font-size=\"11\" text-anchor=\"end\" font-weight=\"bold\">a &lt; b</text>\
             <text x=\"1\" y=\"2\" font-size=\"11\" fill=\"#66686c\">c</text>";
         let head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"92\" height=\"30.5\" viewBox=\"0 0 92 30.5\" \
-            font-family=\"system-ui, sans-serif\" fill=\"#17181a\" role=\"img\" aria-label=\"&quot;label&quot;\">\
-            <style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
+            font-family=\"system-ui, sans-serif\" fill=\"#17181a\" role=\"img\" aria-label=\"&quot;title&quot;\">\
+            <title>&quot;title&quot;</title><desc>&lt;what&gt;</desc><style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
         let expected = format!("{head}{shapes}<g transform=\"translate(52 0)\">{shapes}</g></svg>");
         assert_eq!(svg, expected);
-        let hidden = element([1.0, 1.0], &[], "", "");
+        let hidden = element([1.0, 1.0], &[], None, "");
         assert!(hidden.contains(" aria-hidden=\"true\">"), "{hidden}");
     }
 }

@@ -19,6 +19,7 @@ mod environment;
 mod figure;
 mod finding;
 mod findings;
+mod folders;
 mod history;
 mod json;
 pub mod launches;

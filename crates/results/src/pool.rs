@@ -103,6 +103,10 @@ pub struct Overall {
     /// the times of one mesh; 0 if there are several meshes.
     #[serde(skip)]
     pub(crate) log_error: f64,
+    /// The interval of the mean time divided by that of the fastest backend on average; `None` for this backend, and
+    /// without the intervals of the single times.
+    #[serde(skip)]
+    pub(crate) to_first: Option<[f64; 2]>,
 }
 
 /// The results of one operation on one backend, over several meshes.
@@ -273,6 +277,13 @@ impl Purpose {
 }
 
 impl Overall {
+    /// Returns the confidence interval of the mean time divided by that of the backend that is fastest on average.
+    /// `None` for this backend, for lower bounds, on several meshes if they are fewer than three, and on one mesh if a
+    /// time has no interval.
+    pub fn interval_to_first(&self) -> Option<[f64; 2]> {
+        self.to_first
+    }
+
     /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a
     /// lower bound.
     pub fn times(&self, other: &Self) -> String {

@@ -291,7 +291,8 @@ pub(crate) struct Study {
     /// Untimed runs before each sample [default: as many as fill the caches]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1_000_000))]
     pub(crate) warmup: Option<u32>,
-    /// Run every operation on every backend, whatever it takes
+    /// Run every operation on every backend, whatever it takes; replace a
+    /// report.html that is not a report of Sixfold
     #[arg(long)]
     pub(crate) force: bool,
     #[command(flatten)]
@@ -404,6 +405,9 @@ pub(crate) struct Merge {
     /// Write each figure as SVG, PDF and CSV, and tables for a paper, to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) figures: Option<PathBuf>,
+    /// Replace a report.html that is not a report of Sixfold
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
 }
@@ -424,6 +428,9 @@ pub(crate) struct Draw {
     /// Write each figure as SVG, PDF and CSV, and tables for a paper, to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) figures: Option<PathBuf>,
+    /// Replace a report.html that is not a report of Sixfold
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 impl Study {

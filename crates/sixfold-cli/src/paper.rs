@@ -25,7 +25,8 @@ pub(crate) fn write_if(
     let Some(folder) = folder else {
         return Ok(());
     };
-    write(folder, ReportPage::new(results, command).paper(results))
+    let results = results.without_folders();
+    write(folder, ReportPage::new(&results, command).paper(&results))
 }
 
 /// Writes drawn figures, and prints a notice for each figure without a PDF file.

@@ -352,3 +352,60 @@ fn results_are_written_as_markdown() {
     );
     assert_eq!(same.matches("| edge\\_length | ").count(), 6, "{same}");
 }
+
+#[test]
+fn a_page_of_another_program_is_replaced_only_by_force() {
+    let sixfold = grid();
+    fs::create_dir(sixfold.folder().join("site")).expect("a folder");
+    sixfold.file("site/report.html", "<!DOCTYPE html><title>mine</title>");
+    let message = "site/report.html exists already and is not a report of Sixfold: name another folder, or replace it with --force";
+    let measure = ["study", "grid.obj", "--rounds", "2"];
+    let into_site = [&measure[..], &["--labs", "none", "--report", "site"]].concat();
+    assert_refused(&sixfold, &into_site, 2, message);
+    assert!(text(&sixfold, "site/report.html").ends_with("<title>mine</title>"));
+    run_ok(
+        &sixfold,
+        &[
+            &measure[..],
+            &["--operations", "boundary", "--json", "results.json"],
+        ]
+        .concat(),
+    );
+    let draw = ["report", "results.json", "--to", "site"];
+    assert_refused(&sixfold, &draw, 2, message);
+    run_ok(&sixfold, &[&draw[..], &["--force"]].concat());
+    assert!(
+        text(&sixfold, "site/report.html")
+            .contains("<meta name=\"generator\" content=\"Sixfold\">")
+    );
+    // It is ours now.
+    run_ok(&sixfold, &draw);
+}
+
+#[test]
+fn reports_do_not_name_the_folders_of_the_machine() {
+    let sixfold = grid();
+    let folder = sixfold.folder().to_str().expect("a name").to_owned();
+    let (mesh, out) = (format!("{folder}/grid.obj"), format!("{folder}/out"));
+    let measure = ["study", &mesh, "--rounds", "2", "--labs", "none"];
+    let into_out = ["--operations", "boundary", "--report", &out];
+    run_ok(
+        &sixfold,
+        &[&measure[..], &into_out, &["--figures", "paper"]].concat(),
+    );
+    let mut files = 0;
+    for part in ["out", "paper"] {
+        for entry in fs::read_dir(sixfold.folder().join(part)).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let Ok(text) = fs::read_to_string(&path) else {
+                continue; // a folder or a PDF file
+            };
+            assert!(!text.contains(&folder), "{}", path.display());
+            files += 1;
+        }
+    }
+    assert!(files > 10, "{files} files");
+    assert!(text(&sixfold, "out/report.md").contains("sixfold study grid.obj"));
+    // The study goes on: the file of the mesh has its whole name.
+    run_ok(&sixfold, &[&measure[..], &into_out, &["--resume"]].concat());
+}

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::cell::RefCell;
+use std::ffi::OsStr;
 use std::panic::{self, AssertUnwindSafe, Location, PanicHookInfo};
 use std::path::{Component, Path};
 use std::sync::Once;
@@ -41,10 +42,14 @@ fn note(info: &PanicHookInfo<'_>, print: &dyn Fn(&PanicHookInfo<'_>)) {
         }
         None => false,
     });
-    let backtrace = std::env::var_os("RUST_BACKTRACE");
-    if !is_caught || backtrace.is_some_and(|value| value != "0") {
+    if is_printed(is_caught, std::env::var_os("RUST_BACKTRACE").as_deref()) {
         print(info);
     }
+}
+
+/// Returns whether a panic is printed: one that [`catch`] reports only if the variable `RUST_BACKTRACE` asks for more.
+fn is_printed(is_caught: bool, backtrace: Option<&OsStr>) -> bool {
+    !is_caught || backtrace.is_some_and(|value| value != "0")
 }
 
 /// Returns a place as `file:line:column`. Of an absolute path, only the folder of the package and what follows is left.
@@ -91,6 +96,15 @@ mod tests {
         let caught = caught.map(|(): ()| ()).expect_err("a panic");
         let place = caught.strip_prefix("outer 1 (at ").expect(&caught);
         assert!(place.contains("panics.rs:"), "{caught}");
+    }
+
+    #[test]
+    fn a_caught_panic_is_printed_only_if_a_backtrace_is_asked_for() {
+        assert!(is_printed(false, None));
+        assert!(is_printed(false, Some(OsStr::new("0"))));
+        assert!(!is_printed(true, None));
+        assert!(!is_printed(true, Some(OsStr::new("0"))));
+        assert!(is_printed(true, Some(OsStr::new("1"))));
     }
 
     #[test]

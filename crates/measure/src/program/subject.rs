@@ -175,7 +175,7 @@ pub(super) fn run_program(
     work: impl FnOnce() -> Result<(Time, Option<Outcome>), String>,
 ) -> TimedRun {
     let done = catch(work).map_err(|panic| ProgramRefusal::Panicked(panic).to_string());
-    match done.flatten() {
+    match done.and_then(|done| done) {
         Ok((time, outcome)) => TimedRun::done(time.scaled(1.0 / f64::from(series.runs)), outcome),
         Err(reason) => TimedRun::refused(reason, series),
     }

@@ -107,6 +107,7 @@ fn a_program_runs_on_all_structures_and_its_questions_are_counted() {
     assert_eq!(ranked, all);
     assert_eq!(report.mismatches, Vec::<String>::new());
     assert!(report.choice.is_some());
+    assert!(report.ranking.iter().all(|ranked| ranked.build_ns > 0.0));
     let program = report.program.as_ref().expect("a program");
     assert_eq!(program.kind, "queries");
     let asked = program.asked.as_ref().expect("recorded");
@@ -209,6 +210,47 @@ fn faults_of_a_program_exclude_the_structure_with_the_reason() {
         assert!(reasons.iter().all(|r| r.contains(reason)), "{reasons:?}");
         assert!(report.excluded.iter().all(|e| e.failed));
     }
+}
+
+/// Counts the vertices.
+struct CountsVertices;
+
+impl Program for CountsVertices {
+    type Scratch<M: MeshQuery> = ();
+
+    fn name(&self) -> &str {
+        "counts-vertices"
+    }
+
+    fn set_up<M: MeshQuery>(&self, _: &M) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> Outcome {
+        let count = mesh.vertices().count() as u64;
+        Outcome::new(count as f64, count)
+    }
+}
+
+#[test]
+fn a_structure_that_merges_vertices_is_not_accused_of_another_result() {
+    let corners = [
+        Point::ZERO,
+        Point::X,
+        Point::Y,
+        Point::ZERO,
+        Point::Z,
+        Point::NEG_X,
+    ];
+    let faces = PolygonMesh::new(corners.to_vec(), [[0, 1, 2], [3, 4, 5]]).expect("valid");
+    let mesh = StudyMesh::new("touching", faces);
+    let reports = measure_with(&Suite::from(CountsVertices), mesh, &settings());
+    let [report] = &reports[..] else {
+        panic!("one report")
+    };
+    let soup = report.ranking.iter().find(|r| r.backend == "polygon-soup");
+    assert_eq!(soup.and_then(|soup| soup.result), Some(5.0), "merged");
+    assert_eq!(report.mismatches, Vec::<String>::new());
 }
 
 /// Adds to what the run before left in the scratch data.

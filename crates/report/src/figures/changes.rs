@@ -144,7 +144,7 @@ pub(super) fn cut(text: &str, most: usize) -> String {
 
 /// Returns the width of the widest of `texts`.
 pub(super) fn widest<'t>(texts: impl Iterator<Item = &'t str>) -> f64 {
-    texts.map(|text| text_width(text, 11)).fold(0.0, f64::max)
+    texts.map(|text| text_width(text, 12)).fold(0.0, f64::max)
 }
 
 fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Canvas {
@@ -165,11 +165,11 @@ fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Canvas {
     let [from, to] = [noise.recip(), noise].map(|end| scale.place(end));
     canvas.rect([from, HEAD], [to - from, bottom - HEAD], GRID_COLOUR);
     ratio_axis::draw(&mut canvas, scale, [HEAD, bottom]);
-    let heading = Style::new(11).colour(FAINT_COLOUR);
+    let heading = Style::new(12).colour(FAINT_COLOUR);
     canvas.text([text_from, HEAD - 6.0], TEXTS, heading);
     for (number, row) in rows.iter().enumerate() {
         let y = HEAD + ROW * number as f64 + ROW / 2.0;
-        let label = Style::new(11);
+        let label = Style::new(12);
         canvas.text([names, y + 4.0], &row.operation, label.end());
         canvas.text([names + GAP, y + 4.0], &row.backend, label);
         mark(&mut canvas, ranked, row.change, scale, y);

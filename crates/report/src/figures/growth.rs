@@ -8,13 +8,13 @@ use super::{marked, per_unit};
 use crate::Picture;
 use crate::axes::{Axes, Curve, CurvePoint, LogScale};
 use crate::canvas::{Canvas, Style};
-use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour, column_shape};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
 
 /// Size of a panel, and the places of its axes.
 const SIZE: [f64; 2] = [440.0, 300.0];
-const ACROSS: [f64; 2] = [58.0, 290.0];
+const ACROSS: [f64; 2] = [70.0, 282.0];
 const UPWARDS: [f64; 2] = [256.0, 44.0];
 
 /// Draws a panel for each operation. All panels have the same axes.
@@ -136,6 +136,7 @@ fn panel(
                 None => fit.backend.clone(),
             },
             colour: column_colour(&fit.backend),
+            shape: column_shape(&fit.backend),
             points: points.collect(),
         }
     });
@@ -155,7 +156,7 @@ fn panel(
         canvas.text(
             [ACROSS[0] + 10.0, 80.0],
             "no measured times",
-            Style::new(11).colour(FAINT_COLOUR),
+            Style::new(12).colour(FAINT_COLOUR),
         );
     }
     canvas

@@ -2,8 +2,9 @@
 
 use sixfold_results::numbers::times;
 
+use super::changes::cut;
 use crate::Picture;
-use crate::canvas::{Canvas, Style};
+use crate::canvas::{Canvas, Style, text_width};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR};
 use crate::figure::Figure;
 use crate::matrix::{Cell, Matrix, Source};
@@ -14,6 +15,10 @@ const MAX_RATIO: f64 = 1000.0;
 const NAMES: f64 = 170.0;
 const COLUMN: f64 = 104.0;
 const HEAD: f64 = 26.0;
+/// With more columns, they are narrower, and their names have two lines.
+const MOST_WIDE_COLUMNS: usize = 6;
+const NARROW_COLUMN: f64 = 80.0;
+const LINE: f64 = 14.0;
 const ROW: f64 = 21.0;
 /// The text on dark cells and on light cells, in both modes of the page.
 const ON_DARK: &str = "#ffffff";
@@ -28,6 +33,10 @@ const VIRIDIS: [&str; 31] = [
     "#7ad151", "#8ed645", "#a5db36", "#bddf26", "#d2e21b", "#e7e419", "#fde725",
 ];
 
+/// The first colour on which black letters have more contrast than white ones. Every colour has a contrast of at least
+/// 4.5 with the better one.
+const FIRST_LIGHT: usize = 14;
+
 /// Draws `matrix`. The figure has no picture without operations.
 pub(super) fn figure(
     title: String,
@@ -38,18 +47,32 @@ pub(super) fn figure(
     if matrix.lines.is_empty() {
         return None;
     }
-    let width = NAMES + COLUMN * matrix.backends.len() as f64;
-    let mut canvas = Canvas::new(width, HEAD + ROW * matrix.lines.len() as f64 + 4.0);
+    let is_wide = matrix.backends.len() <= MOST_WIDE_COLUMNS;
+    let (column_width, head) = match is_wide {
+        true => (COLUMN, HEAD),
+        false => (NARROW_COLUMN, HEAD + LINE),
+    };
+    let width = NAMES + column_width * matrix.backends.len() as f64;
+    let mut canvas = Canvas::new(width, head + ROW * matrix.lines.len() as f64 + 4.0);
     for (column, name) in matrix.backends.iter().enumerate() {
-        let x = NAMES + COLUMN * (column as f64 + 0.5);
-        canvas.text([x, HEAD - 8.0], name, Style::new(11).middle());
+        let x = NAMES + column_width * (column as f64 + 0.5);
+        let (first, second) = match name.rfind('-').filter(|_| !is_wide) {
+            Some(dash) => name.split_at(dash + 1),
+            None => ("", name.as_str()),
+        };
+        let style = Style::new(12).middle();
+        let lines = [(first, LINE), (second, 0.0)].into_iter();
+        for (text, above) in lines.filter(|(text, _)| !text.is_empty()) {
+            let letters = (column_width / text_width("n", 12)) as usize;
+            canvas.text([x, head - 8.0 - above], &cut(text, letters), style);
+        }
     }
     for (number, line) in matrix.lines.iter().enumerate() {
-        let y = HEAD + ROW * number as f64;
+        let y = head + ROW * number as f64;
         canvas.text([NAMES - 8.0, y + 15.0], &line.name, Style::new(12).end());
         for (column, cell) in line.cells.iter().enumerate() {
-            let x = NAMES + COLUMN * column as f64;
-            draw_cell(&mut canvas, [x, y], cell, &line.name);
+            let x = NAMES + column_width * column as f64;
+            draw_cell(&mut canvas, [x, y], column_width, cell, &line.name);
         }
     }
     Some(Figure {
@@ -103,8 +126,8 @@ fn caption(matrix: &Matrix) -> String {
     parts.collect::<Vec<_>>().join(" ")
 }
 
-fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str) {
-    let (corner, size) = ([x + 1.0, y + 1.0], [COLUMN - 2.0, ROW - 2.0]);
+fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, cell: &Cell, operation: &str) {
+    let (corner, size) = ([x + 1.0, y + 1.0], [width - 2.0, ROW - 2.0]);
     let text = cell.times_text();
     let measured = cell.ratio.filter(|_| !cell.is_bound());
     let what = match (cell.ratio, cell.source) {
@@ -113,8 +136,8 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str
         (None, _) => "not measured".into(),
     };
     let lead = cell.is_best() || cell.shares_first();
-    let label = Style::new(11).middle().bold(lead);
-    let centre = [x + COLUMN / 2.0, y + 15.0];
+    let label = Style::new(12).middle().bold(lead);
+    let centre = [x + width / 2.0, y + 15.0];
     canvas.mark(
         format!("{operation} on {}: {what}", cell.backend),
         |canvas| {
@@ -124,7 +147,11 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str
                     let share = ratio.clamp(1.0, MAX_RATIO).log10() / MAX_RATIO.log10();
                     let place = (share * (VIRIDIS.len() - 1) as f64).round() as usize;
                     canvas.rect(corner, size, VIRIDIS[place]);
-                    let ink = if share < 0.55 { ON_DARK } else { ON_LIGHT };
+                    let ink = if place < FIRST_LIGHT {
+                        ON_DARK
+                    } else {
+                        ON_LIGHT
+                    };
                     canvas.text(centre, &text, label.colour(ink));
                 }
                 None => {

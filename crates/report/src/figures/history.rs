@@ -10,7 +10,7 @@ use crate::Picture;
 use crate::axes::{Axes, Curve, CurvePoint, LogScale};
 use crate::canvas::{Canvas, Style};
 use crate::changes::verdict_text;
-use crate::colours::{INTERVAL_COLOUR, column_colour};
+use crate::colours::{INTERVAL_COLOUR, column_colour, column_shape};
 use crate::data::into_text;
 use crate::figure::Figure;
 use crate::history::table;
@@ -158,6 +158,7 @@ fn panel(
                 None => backend.clone(),
             },
             colour: column_colour(backend),
+            shape: column_shape(backend),
             points: marks.collect(),
         }
     });

@@ -80,11 +80,9 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
     let matrix = Matrix::of_pool(&pool, &pooled);
     let all = pool.groups.first();
     let groups = groups::all(&pool, &meshes);
-    let answer = [
-        all.and_then(|all| summary::fastest_of_many(&all.overall)),
-        groups::differences(&pool, &groups),
-        all.map(|all| which_meshes(all.meshes.len(), studies.len())),
-    ];
+    let fastest = all.map(|all| summary::fastest_of_many(&all.overall));
+    let meshes_of_means = all.map(|all| which_meshes(all.meshes.len(), studies.len()));
+    let conditions = groups::differences(&pool, &groups);
     let tables = [
         groups::winners(&groups),
         holding(&pool, &meshes),
@@ -95,9 +93,15 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
             "Mesh data structures on {}",
             counted(studies.len(), "mesh", "meshes")
         ),
-        answer: answer.into_iter().flatten().collect(),
+        answer: fastest
+            .into_iter()
+            .flatten()
+            .chain(meshes_of_means)
+            .collect(),
+        conditions: conditions.into_iter().collect(),
         summary: Summary::of_pool(&pool, studies),
         figures: figures(&pool, &meshes, &matrix, command),
+        folded: rankings(&pool, &matrix, command).into_iter().collect(),
         tables: tables.into_iter().flatten().collect(),
         appendix: groups::means(&pool, &groups).into_iter().collect(),
         operations: matrix,
@@ -159,15 +163,17 @@ fn figures(pool: &Pool, meshes: &[Mesh<'_>], matrix: &Matrix, command: &str) -> 
         "Every operation on every structure: geometric mean over {}",
         counted(count, "mesh", "meshes")
     );
-    let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of each mesh.";
-    let operations = [
-        ranking::from_matrix(matrix, note, command),
-        heat_map::figure(title, matrix, "", command),
-    ];
-    let operations = operations.into_iter().flatten();
-    let operations = operations.map(|figure| figure.with_csv(rows::pooled(pool)));
+    let map = heat_map::figure(title, matrix, "", command);
+    let map = map.map(|figure| figure.with_csv(rows::pooled(pool)));
     let spread = distribution::figure(pool, meshes, command);
-    spread.into_iter().chain(operations).collect()
+    spread.into_iter().chain(map).collect()
+}
+
+/// Returns the rankings of all operations.
+fn rankings(pool: &Pool, matrix: &Matrix, command: &str) -> Option<Figure> {
+    let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of each mesh.";
+    let figure = ranking::from_matrix(matrix, note, command)?;
+    Some(figure.with_csv(rows::pooled(pool)))
 }
 
 /// Returns a table of the number of meshes that each backend can hold, with the others by name. `None` if
@@ -273,18 +279,16 @@ fn section(mesh: &Mesh<'_>, results: &Results, count: usize, command: &str) -> S
             table: matrix.ratios(),
         }],
     };
-    let sentences = [
-        summary::fastest_of_study(study),
-        study.how_sure(),
-        summary::turning_points(study, results),
-    ];
+    let mut sentences = summary::fastest_of_study(study);
+    sentences.extend(summary::how_sure(study));
+    sentences.extend(summary::turning_points(study, results));
     Section {
         id: mesh.id.clone(),
         title: mesh.name.clone(),
         facts: facts(&study.mesh),
         summary: Some(Summary::of_study(study, results)),
         code: Vec::new(),
-        sentences: sentences.into_iter().flatten().collect(),
+        sentences,
         figures: figures.into_iter().flatten().collect(),
         tables,
     }

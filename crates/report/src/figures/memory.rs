@@ -13,9 +13,9 @@ use crate::figure::{Figure, Table};
 /// Name of the table of positions. A structure with points instead of vertices has no such table.
 const POSITIONS: &str = "positions";
 /// Width of the figure, of the names, and of the longest bar.
-const WIDTH: f64 = 860.0;
+const WIDTH: f64 = 760.0;
 const NAMES: f64 = 130.0;
-const LONGEST: f64 = 560.0;
+const LONGEST: f64 = 500.0;
 /// Height of a bar, and of a bar with its formula.
 const BAR: f64 = 20.0;
 const ROW: f64 = 46.0;
@@ -59,7 +59,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         let each = shown(all as f64 / vertices as f64);
         let text = format!("{each} ({})", bytes(all));
         canvas.text([end + 8.0, y + 15.0], &text, Style::new(12).bold(true));
-        let small = Style::new(10).colour(FAINT_COLOUR);
+        let small = Style::new(11).colour(FAINT_COLOUR);
         canvas.text([NAMES, y + BAR + 12.0], &formula(&parts), small);
     }
     let title = format!("Bytes per vertex: {}", super::file_name(&study.mesh.name));

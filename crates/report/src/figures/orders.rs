@@ -8,7 +8,7 @@ use super::per_unit;
 use crate::Picture;
 use crate::axes::LogScale;
 use crate::canvas::{Canvas, Style};
-use crate::colours::{FAINT_COLOUR, GRID_COLOUR, table_colour};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, order_mark};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table};
 
@@ -83,7 +83,7 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
              on a logarithmic scale that is the same in all panels: on the right is slower. The text names the slowest order, and \
              gives the time of the best order.{} The table has all times per element.",
             match points.iter().any(|point| point.is_unsure) {
-                true => " Rings are times from too few launches or samples to be ranked.",
+                true => " Open points are times from too few launches or samples to be ranked.",
                 false => "",
             }
         ),
@@ -158,7 +158,8 @@ fn panel(
     );
     let mut x = 0.0;
     for (place, name) in names.iter().enumerate() {
-        canvas.circle([x + 4.0, 27.0], 4.0, table_colour(place));
+        let (colour, shape) = order_mark(place);
+        canvas.point(shape, [x + 4.0, 27.0], 4.0, colour);
         canvas.text([x + 11.0, 31.0], name, Style::new(12).colour(FAINT_COLOUR));
         x += 26.0 + crate::canvas::text_width(name, 12);
     }
@@ -166,7 +167,7 @@ fn panel(
     for tick in scale.ticks() {
         let x = scale.place(tick);
         canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
-        let label = Style::new(11).middle().colour(FAINT_COLOUR);
+        let label = Style::new(12).middle().colour(FAINT_COLOUR);
         canvas.text([x, HEAD - 8.0], &format!("{tick} ×"), label);
     }
     let per = per_unit(lines.first().map_or("", |line| line.per));
@@ -202,9 +203,12 @@ fn panel(
                 duration(ns)
             );
             let at = [scale.place(ratio), y + APART * (place as f64 - middle)];
-            canvas.mark(title, |canvas| match is_unsure {
-                true => canvas.ring(at, 3.5, table_colour(place)),
-                false => canvas.circle(at, 4.0, table_colour(place)),
+            let (colour, shape) = order_mark(place);
+            canvas.mark(title, |canvas| {
+                canvas.point(shape, at, 4.0, colour);
+                if is_unsure {
+                    canvas.point(shape, at, 2.4, BACKGROUND);
+                }
             });
         }
         let text = match worst {

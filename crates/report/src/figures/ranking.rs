@@ -289,7 +289,7 @@ fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Ca
     for tick in scale.ticks() {
         let x = scale.place(tick);
         canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
-        let label = Style::new(11).middle().colour(FAINT_COLOUR);
+        let label = Style::new(12).middle().colour(FAINT_COLOUR);
         canvas.text([x, bottom + 13.0], &format!("{} ×", tick_text(tick)), label);
     }
     for (number, cell) in cells.iter().enumerate() {

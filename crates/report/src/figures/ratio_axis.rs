@@ -27,7 +27,7 @@ pub(super) fn draw(canvas: &mut Canvas, scale: LogScale, [top, bottom]: [f64; 2]
     let words = Style::new(12).bold(true);
     canvas.text([one - 12.0, top - 22.0], "← faster", words.end());
     canvas.text([one + 12.0, top - 22.0], "slower →", words);
-    let faint = Style::new(11).colour(FAINT_COLOUR).middle();
+    let faint = Style::new(12).colour(FAINT_COLOUR).middle();
     let mut taken: Vec<[f64; 2]> = Vec::new();
     for tick in [1.0].into_iter().chain(TICKS) {
         if tick > scale.values[1] {
@@ -37,7 +37,7 @@ pub(super) fn draw(canvas: &mut Canvas, scale: LogScale, [top, bottom]: [f64; 2]
         ratios.dedup();
         let sides = ratios.into_iter().map(|ratio| {
             let (x, label) = (scale.place(ratio), ratio.to_string());
-            let half = text_width(&label, 11) / 2.0 + 4.0;
+            let half = text_width(&label, 12) / 2.0 + 4.0;
             (x, label, [x - half, x + half])
         });
         let sides: Vec<_> = sides.collect();

@@ -146,7 +146,7 @@ fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>], has_dots: bool) -> Canvas {
     ratio_axis::draw(&mut canvas, scale, [HEAD, bottom]);
     for (number, line) in lines.iter().enumerate() {
         let y = HEAD + LINE * (number as f64 + 0.5);
-        let label = Style::new(11);
+        let label = Style::new(12);
         canvas.text([left - GAP, y + 4.0], &backends[number], label.end());
         canvas.text([text_from, y + 4.0], &texts[number], label);
         // The dots cover the line of the median.

@@ -122,9 +122,9 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
     // On fields of their own, so that no line goes through them.
     for (buffer, [_, [x, y]]) in roofs {
         let text = format!("{:.0} GB/s", buffer.gb_per_s);
-        let width = text_width(&text, 11) + 4.0;
+        let width = text_width(&text, 12) + 4.0;
         canvas.rect([x - width - 2.0, y - 15.0], [width, 14.0], BACKGROUND);
-        let label = Style::new(11).end().colour(FAINT_COLOUR);
+        let label = Style::new(12).end().colour(FAINT_COLOUR);
         canvas.text([x - 4.0, y - 4.0], &text, label);
     }
     let colour = column_colour(name);

@@ -2,7 +2,7 @@
 // ratios to the fastest.
 // Warnings and long tables are printed whole.
 addEventListener('beforeprint', () => {
-  for (const details of document.querySelectorAll('main > :not(#meshes) details, .warning')) {
+  for (const details of document.querySelectorAll('main > :not(#meshes) details:not(.folded, .folded *), .warnings')) {
     if (!details.previousElementSibling?.matches('figure')) details.open = true;
   }
 });

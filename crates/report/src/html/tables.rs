@@ -4,6 +4,7 @@ use maud::{Markup, html};
 use sixfold_results::numbers::counted;
 use sixfold_results::{Quotient, Standing};
 
+use super::prose;
 use crate::figure::Table;
 use crate::matrix::{Cell, Line, Matrix, Source};
 use crate::summary::{Rank, Summary, SummaryFigure, bar_length};
@@ -11,13 +12,14 @@ use crate::summary::{Rank, Summary, SummaryFigure, bar_length};
 /// Returns the table of the first screen.
 pub(super) fn summary_table(summary: &Summary) -> Markup {
     html! {
-        div.scroll {
+        div.scroll tabindex="0" role="region" aria-label="Table: the structures by kind of work" {
             table.summary {
                 caption {
                     span {
-                        "Times are divided by the shortest of the column. A longer bar costs more, on a logarithmic scale that ends at \
-                         10 times the least; bars with a gap are longer. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
-                         or undecided · ≥: lower bound, not ranked."
+                        "Times are divided by the shortest of the column; their bars are logarithmic and end at 10 times the least, and \
+                         bars with a gap are longer. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
+                         or undecided · ≥: lower bound, not ranked. Memory: the bytes of all tables divided by the vertices, and by the triangles \
+                         (or faces); multiply by the number of yours. Its bars begin at 0."
                     }
                 }
                 thead {
@@ -51,7 +53,7 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
     };
     let class = match figure.rank {
         Rank::Bound => "figure bound",
-        _ if figure.share >= 1.0 => "figure over",
+        _ if figure.is_cut => "figure over",
         _ => "figure",
     };
     let style = format!("--share:{:.3}", figure.share);
@@ -62,6 +64,7 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
                 Rank::Shared => { span.mark { "◐ " } b { (figure.text) } }
                 _ => { (figure.text) }
             }
+            @if let Some(detail) = &figure.detail { small { (detail) } }
         }
     }
 }
@@ -97,7 +100,7 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
             label { "find" input type="search" name="search" size="12"; }
             output.faint aria-live="polite" {}
         }
-        div.scroll {
+        div.scroll tabindex="0" role="region" aria-label="Table: all operations" {
             table.operations {
                 caption {
                     span {
@@ -200,8 +203,8 @@ fn quotients(cell: &Cell) -> String {
     texts.join(",")
 }
 
-/// Returns a table without bars.
-pub(super) fn plain_table(table: &Table) -> Markup {
+/// Returns a table without bars. `caption` says what the numbers are.
+pub(super) fn plain_table(table: &Table, caption: &str) -> Markup {
     // Columns of words are aligned at the left, and their lines may break.
     let has_word = |cell: &String| {
         let mut parts = cell.split(|c: char| !c.is_alphabetic());
@@ -214,8 +217,9 @@ pub(super) fn plain_table(table: &Table) -> Markup {
     let columns = table.header.iter().enumerate();
     let columns: Vec<(&String, bool)> = columns.map(|(i, name)| (name, words(i))).collect();
     html! {
-        div.scroll {
+        (scroll_box(caption, &html! {
             table {
+                caption { span { (prose(caption)) } }
                 thead { tr { @for (name, words) in &columns { th.words[*words] scope="col" { (name) } } } }
                 tbody {
                     @for (place, row) in table.rows.iter().enumerate() {
@@ -231,6 +235,13 @@ pub(super) fn plain_table(table: &Table) -> Markup {
                     }
                 }
             }
-        }
+        }))
+    }
+}
+
+/// Returns a box that scrolls from side to side if its content is wider than the screen, with a name for screen readers.
+fn scroll_box(name: &str, content: &Markup) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label={ "Table: " (name) } { (content) }
     }
 }

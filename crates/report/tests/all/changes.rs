@@ -113,8 +113,8 @@ fn attribute(svg: &str, tag: &str, name: &str) -> Option<f64> {
 
 /// A mark of a picture: the text of its title, and its shapes.
 fn marks(figure: &Figure) -> Vec<(String, String)> {
-    let svg = figure.picture.svg();
-    let marks = svg.split("<title>").skip(1).map(|mark| {
+    let svg = figure.svg();
+    let marks = svg.split("<g><title>").skip(1).map(|mark| {
         let (title, rest) = mark.split_once("</title>").expect("a title");
         let (shapes, _) = rest.split_once("</g>").expect("a group");
         (title.to_owned(), shapes.to_owned())
@@ -124,7 +124,7 @@ fn marks(figure: &Figure) -> Vec<(String, String)> {
 
 /// Returns the function from ratios to places, by the labels of the axis at 1/2 and 2.
 fn axis(figure: &Figure) -> impl Fn(f64) -> f64 {
-    let svg = figure.picture.svg();
+    let svg = figure.svg();
     let place = |label: &str| {
         let (before, _) = svg
             .split_once(&format!(">{label}</text>"))
@@ -196,7 +196,7 @@ fn marks_are_those_of_the_changes_largest_first() {
     }
     assert!(rows.is_sorted(), "{rows:?}");
     // The band of ratios that count as equal.
-    let svg = figure.picture.svg();
+    let svg = figure.svg();
     let bands = svg.split("<rect ").map(|rect| format!("<rect {rect}"));
     let bands =
         bands.filter(|rect| rect.contains("fill=\"#dcdcda\"") && rect.contains("height=\"60\""));
@@ -597,7 +597,7 @@ fn pages_load_nothing_and_names_are_escaped() {
         "{markdown}"
     );
     for figure in page.all_figures() {
-        assert!(!figure.picture.svg().contains("<script>"), "{}", figure.id);
+        assert!(!figure.svg().contains("<script>"), "{}", figure.id);
     }
     let names: Vec<String> = page.files().into_iter().map(|file| file.name).collect();
     assert_eq!(

@@ -38,7 +38,7 @@ fn reports_are_drawn_from_their_data() {
         let page = drawn(&folder, command.expect("a command"));
         for figure in page.all_figures() {
             let file = format!("figures/{}.svg", figure.id);
-            let is_same = committed(&file) == figure.picture.svg();
+            let is_same = committed(&file) == figure.svg();
             assert!(is_same, "{name}/{file} is drawn differently");
             figures += 1;
         }

@@ -275,21 +275,26 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             let squares: f64 = errors.map(|error| error.powi(2)).sum();
             squares.sqrt() / shared.len().max(1) as f64
         };
+        let has_intervals = |backend: &str| {
+            let mut known = shared.iter().filter_map(|&case| value(case, backend));
+            known.all(|known| known.log_error.is_some())
+        };
+        // The mean of the ratios on each mesh, with the size of the mesh.
+        let by_mesh = |backend: &str| -> Vec<(u32, f64)> {
+            let means = (0..studies.len()).filter_map(|mesh| {
+                let own = shared.iter().filter(|&&case| cases[case].0 == mesh);
+                let ratios: Vec<f64> = own.filter_map(|&case| ratio(case, backend)).collect();
+                Some((
+                    decade(studies[mesh]),
+                    geometric_mean(&ratios, confidence)?.0,
+                ))
+            });
+            means.collect()
+        };
         let mut rows: Vec<Overall> = compared
             .iter()
             .filter_map(|backend| {
-                // Mean over the tasks of each mesh, with the size of the mesh.
-                let by_mesh: Vec<(u32, f64)> = (0..studies.len())
-                    .filter_map(|mesh| {
-                        let own = shared.iter().filter(|&&case| cases[case].0 == mesh);
-                        let ratios: Vec<f64> =
-                            own.filter_map(|&case| ratio(case, backend)).collect();
-                        Some((
-                            decade(studies[mesh]),
-                            geometric_mean(&ratios, confidence)?.0,
-                        ))
-                    })
-                    .collect();
+                let by_mesh = by_mesh(backend);
                 let bound = is_bound(backend);
                 mean_over_sizes(&by_mesh, confidence).map(|(mean, interval)| {
                     let interval = interval.filter(|_| !bound);
@@ -309,6 +314,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                         tied: 0,
                         undecided: 0,
                         log_error: log_error(backend),
+                        to_first: None,
                     }
                 })
             })
@@ -317,6 +323,27 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             let by_ratio = a.ratio_to_best.total_cmp(&b.ratio_to_best);
             a.bound.cmp(&b.bound).then(by_ratio)
         });
+        if let Some((first, others)) = rows.split_first_mut().filter(|(first, _)| !first.bound) {
+            let of_first = by_mesh(&first.backend);
+            for row in others.iter_mut().filter(|row| !row.bound) {
+                let quotients = by_mesh(&row.backend).into_iter().zip(&of_first);
+                let quotients = quotients.map(|((size, own), (_, first))| (size, own / first));
+                let quotients: Vec<(u32, f64)> = quotients.collect();
+                let error = row.log_error.hypot(first.log_error);
+                row.to_first = match studies {
+                    [_] => [&row.backend, &first.backend]
+                        .into_iter()
+                        .all(|backend| has_intervals(backend))
+                        .then(|| {
+                            let quotient = row.ratio_to_best / first.ratio_to_best;
+                            [quotient * (-error).exp(), quotient * error.exp()]
+                        }),
+                    _ => mean_over_sizes(&quotients, confidence).and_then(|(mean, ends)| {
+                        with_errors(ends, mean, [Some(error)].into_iter())
+                    }),
+                };
+            }
+        }
         overall.extend(rows);
         let mut meshes: Vec<usize> = shared.iter().map(|&case| cases[case].0).collect();
         meshes.dedup();

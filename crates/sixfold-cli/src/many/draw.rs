@@ -14,7 +14,7 @@ pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     let results = merged(&arguments.results)?;
     let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     if let Some(to) = &arguments.to {
-        Folder::create(to)?.write_page(&results, &command_line())?;
+        Folder::create(to, arguments.force)?.write_page(&results, &command_line())?;
     }
     paper::write_if(paper.as_ref(), &results, &command_line())?;
     Ok(ExitCode::SUCCESS)

@@ -15,7 +15,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use sixfold_report::ReportPage;
+use sixfold_report::{GENERATOR, ReportPage};
 use sixfold_results::{Finding, Results, RunSettings};
 use sixfold_study::{Settings, sha256_of};
 
@@ -44,6 +44,7 @@ impl Folder {
     ) -> Result<Self, Failure> {
         let shown = path.display();
         let folder = Self { path: path.into() };
+        folder.check_page(arguments.force)?;
         let studies = folder.studies();
         fs::create_dir_all(&studies).map_err(|cause| cannot_write(&shown.to_string(), &cause))?;
         let files = folder.study_files()?;
@@ -86,11 +87,25 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Opens or creates the folder for complete results.
-    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
+    /// Opens or creates the folder for complete results. With `force`, a page of another program is replaced.
+    pub(super) fn create(path: &Path, force: bool) -> Result<Self, Failure> {
+        let folder = Self { path: path.into() };
+        folder.check_page(force)?;
         let shown = path.display().to_string();
         fs::create_dir_all(path).map_err(|cause| cannot_write(&shown, &cause))?;
-        Ok(Self { path: path.into() })
+        Ok(folder)
+    }
+
+    /// Refuses to replace a page that is not a report of Sixfold.
+    fn check_page(&self, force: bool) -> Result<(), Failure> {
+        let page = self.path.join("report.html");
+        match fs::read(&page) {
+            Ok(old) if !force && !is_report(&old) => Err(Failure::usage(format!(
+                "{} exists already and is not a report of Sixfold: name another folder, or replace it with --force",
+                page.display()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// Removes the folder if this program wrote nothing into it.
@@ -164,6 +179,7 @@ impl Folder {
     /// Writes all results and the page. `command` reproduces them. If one file cannot be written,
     /// writes the others anyway, and returns the first error.
     pub(super) fn write_report(&self, results: &Results, command: &str) -> Result<(), Failure> {
+        let results = &*results.without_folders();
         let output = |name: &str| Output::open(&self.path.join(name));
         let json = output("results.json").and_then(|o| o.finish(|w| results.write_json(w)));
         let csv = output("results.csv").and_then(|o| o.finish(|w| results.write_csv(w)));
@@ -175,6 +191,7 @@ impl Folder {
 
     /// Writes only the page and the figures.
     pub(super) fn write_page(&self, results: &Results, command: &str) -> Result<(), Failure> {
+        let results = &*results.without_folders();
         let output = |name: &str| Output::open(&self.path.join(name));
         let page = ReportPage::new(results, command);
         let old_figures = self.linked_figures();
@@ -200,6 +217,12 @@ impl Folder {
         let is_id = |id: &&str| id.chars().all(|c| c.is_ascii_alphanumeric() || c == '-');
         ids.filter(is_id).map(str::to_owned).collect()
     }
+}
+
+/// Returns whether a page is a report of Sixfold, also of a version whose pages did not say so.
+fn is_report(page: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&page[..page.len().min(4096)]);
+    start.contains(GENERATOR) || start.contains("<title>Mesh data structures")
 }
 
 /// Adds a saved study to `results` if its mesh is selected and its file has not changed.

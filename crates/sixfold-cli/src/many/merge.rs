@@ -36,7 +36,8 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     super::print_all(&merged, &mut session.text);
     let mut written = session.write(&mut merged);
     if let Some(path) = &arguments.report {
-        written = written.and(Folder::create(path)?.write_report(&merged, &command_line()));
+        written = written
+            .and(Folder::create(path, arguments.force)?.write_report(&merged, &command_line()));
     }
     let written = written.and(paper::write_if(paper.as_ref(), &merged, &command_line()));
     exit_code(written, &merged, false)

@@ -177,7 +177,7 @@ fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Canvas {
         canvas.text(
             [x, HEAD - 8.0],
             &label,
-            Style::new(11).middle().colour(FAINT_COLOUR),
+            Style::new(12).middle().colour(FAINT_COLOUR),
         );
     }
     for (number, line) in panel.lines.iter().enumerate() {
