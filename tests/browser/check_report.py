@@ -350,7 +350,9 @@ return {
             backend: cell.dataset.backend, source: cell.dataset.source, ns: cell.dataset.ns && Number(cell.dataset.ns),
             text: [...cell.childNodes].filter((node) => node.nodeName !== 'SMALL').map((node) => node.textContent).join(''),
             small: cell.querySelector('small')?.textContent ?? '',
-            bar: Number(cell.style.getPropertyValue('--share') || 0),
+            at: Number(cell.style.getPropertyValue('--at') || 0),
+            from: Number(cell.style.getPropertyValue('--from') || 0),
+            to: Number(cell.style.getPropertyValue('--to') || 0),
         })),
     })),
 };
@@ -384,6 +386,41 @@ def quotient(studies, operation, backend, other, pooled):
     return math.exp(sum(means) / len(means)) if means else None
 
 
+def check_line(cell, scale):
+    """Compares the line of an interval with the numbers of the cell. `scale` is the place of a ratio."""
+    if not cell["small"]:
+        assert cell["from"] == cell["to"] == 0, cell
+        return
+    for end, text in zip(("from", "to"), cell["small"].split(" to ")):
+        place = min(1, max(0, scale(float(text.replace(",", "")))))
+        close_to(cell[end], place, f"the line of {cell}", 4e-3)
+
+
+OPEN = """
+document.querySelectorAll('#operations tbody th button')[0].click();
+const opened = document.querySelector('#operations .samples');
+return opened && {
+    name: opened.previousElementSibling.dataset.operation,
+    names: [...opened.querySelectorAll('text[text-anchor=end]')].map((text) => text.textContent).slice(1),
+    ticks: [...opened.querySelectorAll('path')].reduce((sum, path) => sum + path.getAttribute('d').split('M').length - 1, 0),
+};
+"""
+
+
+def check_samples(browser, studies, pooled):
+    """Checks that the first operation opens to all its samples, and closes."""
+    if pooled:
+        assert not browser.run("return document.querySelectorAll('#operations tbody th button').length")
+        return
+    opened = browser.run(OPEN)
+    timed = {row["backend"] for row in studies[0]["results"] if row["operation"] == opened["name"] and row["median_ns"]}
+    samples = [s for s in studies[0]["samples"]
+               if s["operation"] == opened["name"] and s["backend"] in timed and not s["control"]]
+    assert sorted(opened["names"]) == sorted(s["backend"] for s in samples), opened
+    assert opened["ticks"] == sum(len(s["wall_ns"]) for s in samples), opened
+    assert browser.run(OPEN) is None, "the samples do not close"
+
+
 def check_operations(browser, rows, ratios, studies, pooled):
     """Checks the table of operations: its figures, and what its controls do."""
     names = list(dict.fromkeys(row["operation"] for row in rows))
@@ -399,7 +436,8 @@ def check_operations(browser, rows, ratios, studies, pooled):
             sign = {"bound": "≥ ", "sampled": "~ "}.get(cell["source"], "")
             number = shown(rounded_down(ratio) if cell["source"] == "bound" else ratio)
             assert cell["text"].removesuffix(" undecided").removesuffix(" equal") == f"{sign}{number} ×", (row["name"], cell, ratio)
-            close_to(cell["bar"], min(1, max(0, math.log10(ratio))), f"the bar of {row['name']} on {cell['backend']}", 1e-3)
+            close_to(cell["at"], min(1, max(0, math.log10(ratio))), f"the dot of {row['name']} on {cell['backend']}", 2e-3)
+            check_line(cell, lambda end: math.log10(end))
     # Times.
     browser.run(CHOOSE, "figures", "times")
     for row in browser.run(TABLE)["rows"]:
@@ -426,6 +464,10 @@ def check_operations(browser, rows, ratios, studies, pooled):
                 if cell["small"]:
                     low, high = (float(end.replace(",", "")) for end in cell["small"].split(" to "))
                     assert low <= rounded(expected) <= high, (row["name"], cell)
+                # Another baseline moves the dots and their lines: the scale goes from 1/10 to 10.
+                scale = lambda ratio: (math.log10(ratio) + 1) / 2
+                close_to(cell["at"], min(1, max(0, scale(expected))), f"the dot of {row['name']} on {cell['backend']}", 2e-3)
+                check_line(cell, scale)
                 compared += 1
     assert compared, "no ratio to another baseline"
     browser.run(CHOOSE, "baseline", "")
@@ -441,6 +483,7 @@ def check_operations(browser, rows, ratios, studies, pooled):
         assert all(ratio is None for ratio in first[len(known):]), first
     browser.run(CLICK, 1)
     assert [row["name"] for row in browser.run(TABLE)["rows"]] == [row["name"] for row in before["rows"]]
+    check_samples(browser, studies, pooled)
     # Filters.
     browser.run(CHOOSE, "search", names[-1])
     found = [row["name"] for row in browser.run(TABLE)["rows"]]
@@ -492,7 +535,10 @@ def check_page(page, results, studies):
         [study] = studies
         assert len(page["images"]) == bool(study["mesh"].get("picture")), page["images"]
         names = [column["name"] for column in study["backends"]]
-        assert [row[0] for row in page["summary"]] == names, page["summary"]
+        assert sorted(row[0] for row in page["summary"]) == sorted(names), page["summary"]
+        # The fastest in queries is the first.
+        queries = [row for row in study["overall"] if row["purpose"] == "query"] if "overall" in study else []
+        assert not queries or page["summary"][0][0] == queries[0]["backend"], page["summary"]
         memory = [row for row in study["backends"] if row["bytes_per_vertex"]]
         for row in memory:
             text = next(cells for cells in page["summary"] if cells[0] == row["name"])

@@ -159,6 +159,9 @@ impl ReportPage {
             section id="method" {
                 (heading("h2", "How it was measured", "method"))
                 pre { code { (self.command) } }
+                @if let Some(data) = &self.data {
+                    p { "All results, with every sample: " a href=(data) { (data) } }
+                }
                 @for machine in &self.machines { p { (machine) } }
                 @for paragraph in &self.methods { p { (paragraph) } }
             }

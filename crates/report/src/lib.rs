@@ -47,7 +47,7 @@ pub use panels::{Panel, panels};
 pub use papers::{NoPdf, PaperFile, PaperFiles};
 pub use pdf::PdfError;
 pub use picture::Picture;
-pub use summary::{Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};
+pub use summary::{Drawing, Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};
 
 /// A report on studies and additional measurements.
 #[derive(Clone, Debug, Default)]
@@ -66,6 +66,8 @@ pub struct ReportPage {
     pub conditions: Vec<String>,
     /// The structures by kind of work; `None` without a study.
     pub summary: Option<Summary>,
+    /// The name of the file beside the page that has all results as JSON; `None` if there is none.
+    pub data: Option<String>,
     /// The command that reproduces the report.
     pub command: String,
     /// Descriptions of the machines, one line each.

@@ -2,8 +2,8 @@
 
 use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_results::{
-    Confidence, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Pool, Pooled, Quotient,
-    RefusalKind, Report, ResultRow, Standing, mean_quotients, operations,
+    Confidence, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Overall, Pool, Pooled, Purpose,
+    Quotient, RefusalKind, Report, ResultRow, Standing, mean_quotients, operations,
 };
 
 use crate::figure::Table;
@@ -45,6 +45,8 @@ pub(crate) struct Cell {
     pub(crate) remark: Option<String>,
     /// The ratio on each mesh, if `ratio` is a mean over meshes.
     pub(crate) each: Vec<f64>,
+    /// The times per element of all samples in nanoseconds, by launch; empty for a mean over meshes.
+    pub(crate) launches: Vec<Vec<f64>>,
     /// The quotients of this time and that of each backend of the matrix, in its order.
     pub(crate) quotients: Vec<Option<Quotient>>,
 }
@@ -87,6 +89,7 @@ impl Cell {
             samples: 0,
             remark: None,
             each: Vec::new(),
+            launches: Vec::new(),
             quotients: Vec::new(),
         }
     }
@@ -192,6 +195,7 @@ impl Cell {
             first_ns: first_time(row),
             standing: row.standing,
             samples: row.samples,
+            launches: launches(study, row),
             remark: ratio
                 .is_none()
                 .then(|| "other work than the others, not compared".into()),
@@ -242,6 +246,25 @@ impl Cell {
     }
 }
 
+/// Returns the times per element of the samples of a row by launch, also of those that other programs disturbed.
+fn launches(study: &Report, row: &ResultRow) -> Vec<Vec<f64>> {
+    let mut samples = study.samples.iter();
+    let samples = samples.find(|samples| {
+        !samples.control && samples.operation == row.operation && samples.backend == row.backend
+    });
+    let Some((samples, elements)) = samples.zip(row.elements.filter(|&n| n > 0)) else {
+        return Vec::new();
+    };
+    let times = samples.cpu_ns.as_ref().unwrap_or(&samples.wall_ns);
+    let launch_of = |sample: usize| samples.launches.get(sample).copied().unwrap_or(0);
+    let places: Vec<usize> = (0..times.len()).collect();
+    let launches = places.chunk_by(|&a, &b| launch_of(a) == launch_of(b));
+    let each = |&sample: &usize| times[sample] / elements as f64;
+    launches
+        .map(|launch| launch.iter().map(each).collect())
+        .collect()
+}
+
 /// Fewer samples give no interval.
 const FEWEST_FOR_INTERVAL: usize = 3;
 
@@ -257,7 +280,8 @@ impl Matrix {
     /// that can hold the mesh.
     pub(crate) fn of_study(study: &Report) -> Self {
         let holding = study.backends.iter().filter(|backend| backend.holds);
-        let backends: Vec<String> = holding.map(|backend| backend.name.clone()).collect();
+        let mut backends: Vec<String> = holding.map(|backend| backend.name.clone()).collect();
+        likely_first(&mut backends, &study.overall(), |name| name);
         let lines = by_group(&[study]).filter_map(|info| {
             let operation = info.name.as_str();
             let unit = study.rows(operation).next()?.per.clone();
@@ -285,6 +309,8 @@ impl Matrix {
                 backends.push(row.backend.clone());
             }
         }
+        let overall = pool.groups.first().map_or(&[][..], |all| &all.overall);
+        likely_first(&mut backends, overall, |name| name);
         let lines = by_group(studies).filter_map(|info| {
             let operation = info.name.as_str();
             let rows = pool.all().iter().filter(|row| row.operation == operation);
@@ -313,6 +339,21 @@ impl Matrix {
                 .map_or_else(Confidence::default, |study| study.run.settings.confidence),
         }
     }
+}
+
+/// Sorts backends, which `name` names: the fastest in queries first, or in the first other kind of work if no queries were
+/// measured. On a narrow screen, a table begins with those that are likely chosen.
+pub(crate) fn likely_first<T>(backends: &mut [T], overall: &[Overall], name: impl Fn(&T) -> &str) {
+    let mut works = [Purpose::Query].into_iter().chain(Purpose::ALL);
+    let rows = works.find_map(|purpose| {
+        let rows = purpose.rows(overall);
+        (!rows.is_empty()).then_some(rows)
+    });
+    let rows = rows.unwrap_or_default();
+    backends.sort_by_key(|backend| {
+        let place = rows.iter().position(|row| row.backend == name(backend));
+        place.unwrap_or(rows.len())
+    });
 }
 
 /// Returns the measured ratios of one backend to the fastest of each mesh.

@@ -3,6 +3,7 @@
 
 use crate::figure::Table;
 use crate::figures::break_even;
+use crate::matrix::likely_first;
 use sixfold_results::launches::FEWEST_LAUNCHES;
 use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
@@ -49,13 +50,24 @@ pub struct SummaryFigure {
     pub text: String,
     /// The figure in another unit, such as `18.0 B per triangle`.
     pub detail: Option<String>,
-    /// Length of the bar: of a time from 0 for the best to 1 for 10 times the best and more, on a logarithmic scale; of
-    /// memory the share of the largest.
-    pub share: f64,
-    /// Whether the bar would be longer to scale.
-    pub is_cut: bool,
+    /// How the figure is drawn.
+    pub drawing: Drawing,
     /// Whether the figure is the best, or shares the first place.
     pub rank: Rank,
+}
+
+/// How a figure of a [`Summary`] is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drawing {
+    /// A dot for a ratio, and a line for its interval, on a logarithmic scale.
+    Dot {
+        /// The ratio to the best.
+        ratio: f64,
+        /// The ends of the interval of the ratio.
+        interval: Option<[f64; 2]>,
+    },
+    /// A bar from 0: the share of the largest.
+    Bar(f64),
 }
 
 /// The rank of a figure in its column.
@@ -72,31 +84,18 @@ pub enum Rank {
 }
 
 impl SummaryFigure {
-    /// Returns a figure of which small values are good.
-    fn new(value: f64, best: f64, rank: Rank, text: String) -> Self {
+    fn ratio(ratio: f64, interval: Option<[f64; 2]>, rank: Rank, text: String) -> Self {
         Self {
             text,
             detail: None,
-            share: bar_length(value / best),
-            is_cut: value >= 10.0 * best,
+            drawing: Drawing::Dot { ratio, interval },
             rank,
         }
     }
 }
 
-/// Returns the length of the bar of a cost that is `ratio` times the least: from 0 for the least to 1 for 10
-/// times the least and more, on a logarithmic scale.
-pub(crate) fn bar_length(ratio: f64) -> f64 {
-    ratio.log10().clamp(0.0, 1.0)
-}
-
 /// The kinds of work, with the word for each column.
 const WORK: [(Purpose, &str, &str); 4] = [
-    (
-        Purpose::Build,
-        "build",
-        "Time to build the structure from an indexed face set, divided by the shortest",
-    ),
     (
         Purpose::Query,
         "queries",
@@ -111,6 +110,11 @@ const WORK: [(Purpose, &str, &str); 4] = [
         Purpose::Subdivide,
         "subdivision",
         "Time of a subdivision step by the fastest method, divided by the shortest",
+    ),
+    (
+        Purpose::Build,
+        "build",
+        "Time to build the structure from an indexed face set, divided by the shortest",
     ),
 ];
 
@@ -220,6 +224,8 @@ impl Summary {
         memory: &[Memory],
         orders: Option<&OrdersReport>,
     ) -> Self {
+        let mut backends = backends.to_vec();
+        likely_first(&mut backends, &work.overall, |(name, _)| name);
         let mut summary = Self {
             columns: Vec::new(),
             rows: backends
@@ -241,7 +247,7 @@ impl Summary {
             summary.column([name, about, &over], |backend| {
                 work_figure(rows, decided, backend)
             });
-            if purpose == Purpose::Build {
+            if purpose == Purpose::Query {
                 let about = "Bytes of all tables, with spare capacity, divided by the number of vertices; below, by the number of faces";
                 let column = ["memory", about, "bytes per vertex"];
                 summary.column(column, |backend| memory_figure(memory, backend));
@@ -311,13 +317,10 @@ fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<Summary
         true => Rank::Shared,
         false => Rank::Other,
     };
+    let ratio = row.ratio_to_best / rows[0].ratio_to_best;
+    let interval = row.interval_to_first().filter(|_| !row.bound);
     let text = row.times(&rows[0]);
-    Some(SummaryFigure::new(
-        row.ratio_to_best,
-        rows[0].ratio_to_best,
-        rank,
-        text,
-    ))
+    Some(SummaryFigure::ratio(ratio, interval, rank, text))
 }
 
 fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
@@ -340,11 +343,10 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
     let most = most.fold(own, f64::max);
     let detail = format!("{} B per {}", figure(held.bytes_per_face), held.face);
     Some(SummaryFigure {
+        text: format!("{} B", figure(own)),
         detail: Some(detail),
-        // Bytes are compared from 0; the full length is the largest structure.
-        share: own / most.max(f64::MIN_POSITIVE),
-        is_cut: false,
-        ..SummaryFigure::new(own, least, rank, format!("{} B", figure(own)))
+        drawing: Drawing::Bar(own / most.max(f64::MIN_POSITIVE)),
+        rank,
     })
 }
 
@@ -365,7 +367,7 @@ fn order_effect<'r>(orders: &'r OrdersReport, backend: &str) -> Option<(f64, &'r
 fn order_figure(orders: &OrdersReport, backend: &str) -> Option<SummaryFigure> {
     let (own, _) = order_effect(orders, backend)?;
     // No ranks: a structure that scans all faces hardly depends on the order, but is slow in all.
-    Some(SummaryFigure::new(own, 1.0, Rank::Other, times(own)))
+    Some(SummaryFigure::ratio(own, None, Rank::Other, times(own)))
 }
 
 /// Returns a sentence for each kind of work of a study: the fastest backends, and the next one with the interval of its

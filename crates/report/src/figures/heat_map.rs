@@ -1,5 +1,6 @@
 //! The heat map: all structures and operations in one figure, with their ratios.
 
+use sixfold_results::Standing;
 use sixfold_results::numbers::times;
 
 use super::changes::cut;
@@ -104,6 +105,10 @@ fn caption(matrix: &Matrix) -> String {
             "The fastest, and those that share the first place, are bold.".into(),
         ),
         (
+            has(&|cell| cell.standing == Some(Standing::Undecided)),
+            "Hatched at the edges: perhaps the fastest, undecided.".into(),
+        ),
+        (
             has(&|cell| cell.ratio > Some(MAX_RATIO) && !cell.is_bound()),
             format!("All ratios of {} or more have one colour.", times(MAX_RATIO)),
         ),
@@ -124,6 +129,22 @@ fn caption(matrix: &Matrix) -> String {
         .into_iter()
         .filter_map(|(has, text)| has.then_some(text));
     parts.collect::<Vec<_>>().join(" ")
+}
+
+/// Draws diagonal lines at both ends of a cell.
+fn hatch(canvas: &mut Canvas, [x, y]: [f64; 2], [width, height]: [f64; 2], ink: &'static str) {
+    const WIDTH: f64 = 9.0;
+    const APART: f64 = 4.5;
+    for left in [x, x + width - WIDTH] {
+        let mut across = APART;
+        while across < WIDTH + height {
+            // From the upper or right side to the left or lower side.
+            let from = [left + across.min(WIDTH), y + (across - WIDTH).max(0.0)];
+            let to = [left + (across - height).max(0.0), y + across.min(height)];
+            canvas.line(from, to, ink, 0.8);
+            across += APART;
+        }
+    }
 }
 
 fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, cell: &Cell, operation: &str) {
@@ -152,6 +173,9 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, cell: &Cell, ope
                     } else {
                         ON_LIGHT
                     };
+                    if cell.standing == Some(Standing::Undecided) {
+                        hatch(canvas, corner, size, ink);
+                    }
                     canvas.text(centre, &text, label.colour(ink));
                 }
                 None => {

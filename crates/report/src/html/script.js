@@ -7,6 +7,26 @@ addEventListener('beforeprint', () => {
   }
 });
 
+// The numbers of each figure as CSV.
+for (const figure of document.querySelectorAll('figure[data-figure]')) {
+  const table = figure.parentElement.querySelector('table');
+  if (!table) continue;
+  const button = document.createElement('button');
+  button.type = 'button';
+  button.className = 'csv';
+  button.textContent = `${figure.dataset.figure}.csv`;
+  button.addEventListener('click', () => {
+    const quoted = (cell) => `"${cell.textContent.replaceAll('"', '""')}"`;
+    const lines = [...table.rows].map((row) => [...row.cells].map(quoted).join(',') + '\r\n');
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob(lines, {type: 'text/csv'}));
+    link.download = button.textContent;
+    link.click();
+    URL.revokeObjectURL(link.href);
+  });
+  figure.querySelector('.source').append(' · numbers: ', button);
+}
+
 (() => {
   const table = document.querySelector('#operations table');
   if (!table) return;
@@ -25,8 +45,10 @@ addEventListener('beforeprint', () => {
         cell, backend: cell.dataset.backend, bound: cell.dataset.source === 'bound',
         ns: number('ns'), low: number('low'), high: number('high'), ratio: number('ratio'),
         // The ratio to each backend, with its interval.
-        to: (cell.dataset.to ?? '').split(',').map((text) => text.split(' ').filter(Boolean).map(Number)),
-        plain: cell.innerHTML, shown: null,
+        quotients: (cell.dataset.to ?? '').split(',').map((text) => text.split(' ').filter(Boolean).map(Number)),
+        samples: (cell.dataset.samples ?? '').split(' ').slice(1).map((launch) =>
+          launch.split(',').map((longer) => Number(cell.dataset.samples.split(' ')[0]) * (1 + Number(longer) / 1000))),
+        from: Number(cell.dataset.from), to: Number(cell.dataset.until), plain: cell.innerHTML, shown: null,
       };
     }),
   }));
@@ -47,14 +69,20 @@ addEventListener('beforeprint', () => {
     const [unit, size] = units.find(([, size]) => Number(digits(ns).replaceAll(',', '')) < 1e3 * size) ?? units.at(-1);
     return `${digits(ns / size, round)} ${unit}`;
   };
-  // A bar that is too long has a gap; empty and dashed bars have none.
-  const setBar = (cell, ratio) => {
-    cell.style.setProperty('--share', length(ratio));
-    cell.classList.toggle('over', ratio > 10 && cell.dataset.source === 'measured');
+  // The scale goes from 1 to 10, or from 1/10 to 10 about another baseline.
+  let start = 1;
+  const place = (ratio) => Math.min(1, Math.max(0, Math.log10(ratio / start) / Math.log10(10 / start)));
+  const setDot = (cell, ratio, low, high) => {
+    cell.style.setProperty('--at', place(ratio));
+    cell.style.setProperty('--from', low ? place(low) : 0);
+    cell.style.setProperty('--to', low ? place(high) : 0);
+    cell.classList.toggle('over', ratio > 10);
+    cell.classList.toggle('under', ratio < start);
+    cell.classList.toggle('dot', true);
   };
-  const length = (ratio) => Math.min(1, Math.max(0, Math.log10(ratio)));
   const reading = table.querySelector('.reading');
   const plainReading = reading.textContent;
+  const scale = table.querySelector('.scale');
   const cellHtml = (text, small) => `${text}${small ? `<small>${small}</small>` : ''}`;
 
   const draw = () => {
@@ -62,9 +90,12 @@ addEventListener('beforeprint', () => {
       ? 'Time for each element, with its 95 % interval where there are enough samples.'
       : baseline.value === '' ? plainReading
         : `Time divided by that of ${baseline.value}, with the 95 % interval of this ratio.`;
+    start = figures.value === 'times' || baseline.value === '' ? 1 : 0.1;
+    table.style.setProperty('--start', place(1));
+    scale.textContent = start === 1 ? 'from 1 to 10' : 'from 1/10 to 10, with a line at 1';
     for (const {cells} of rows) {
-      const place = cells.findIndex(({backend}) => backend === baseline.value);
-      const base = cells[place];
+      const column = cells.findIndex(({backend}) => backend === baseline.value);
+      const base = cells[column];
       const fastest = baseline.value === '';
       const shortest = Math.min(...cells.filter(({ns, bound}) => ns !== null && !bound).map(({ns}) => ns));
       for (const entry of cells) {
@@ -76,28 +107,29 @@ addEventListener('beforeprint', () => {
         if (figures.value === 'times') {
           const ends = low === null ? '' : `${duration(low)} to ${duration(high)}`;
           cell.innerHTML = cellHtml(sign + duration(ns, round), ends);
-          setBar(cell, ns / shortest);
+          setDot(cell, ns / shortest, low / shortest, high / shortest);
         } else if (fastest) {
           cell.innerHTML = entry.plain;
-          if (entry.ratio !== null) setBar(cell, entry.ratio);
+          if (entry.ratio !== null) setDot(cell, entry.ratio, entry.from, entry.to);
           entry.shown = entry.ratio ?? ns;
         } else if (!base || base.ns === null || base.bound) {
           cell.textContent = '–';
-          setBar(cell, 1);
+          cell.classList.remove('dot', 'over', 'under');
           entry.shown = null;
         } else {
           // A lower bound has no ratio of its own.
-          const [ratio = ns / base.ns, from, to] = entry.to[place] ?? [];
+          const [ratio = ns / base.ns, from, to] = entry.quotients[column] ?? [];
           entry.shown = ratio;
           const ends = entry === base || from === undefined ? '' : `${digits(from)} to ${digits(to)}`;
           cell.innerHTML = cellHtml(`${sign}${digits(ratio, round)} ×`, ends);
-          setBar(cell, ns / shortest);
+          setDot(cell, ratio, ends && from, to);
         }
       }
     }
   };
 
   const filter = () => {
+    close();
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     let visible = 0;
     for (const {row, name, group: own} of rows) {
@@ -107,6 +139,52 @@ addEventListener('beforeprint', () => {
     }
     status.textContent = `${visible} of ${rows.length} operations`;
   };
+
+  // The samples of an operation: a line of ticks for each launch, on one logarithmic axis for all columns.
+  const NAMES = 130, LENGTH = 460, LAUNCH = 5, TOP = 22;
+  const samplesOf = ({name, cells}) => {
+    const known = cells.filter(({samples}) => samples.length);
+    const all = known.flatMap(({samples}) => samples.flat());
+    const [least, most] = [Math.min(...all), Math.max(...all) * 1.001];
+    const across = (ns) => (NAMES + LENGTH * Math.log(ns / least) / Math.log(most / least)).toFixed(1);
+    let y = TOP;
+    const lines = known.map(({cell: {dataset: {backend}}, samples}) => {
+      const middle = y + samples.length * LAUNCH / 2 + 4;
+      const ticks = samples.map((launch, nth) => `<path stroke="var(--link)" d="${launch.map((ns) =>
+        `M${across(ns)} ${y + nth * LAUNCH}v${LAUNCH - 1}`).join('')}"><title>${backend}, launch ${nth + 1}: ${
+        launch.length} samples, ${duration(Math.min(...launch))} to ${duration(Math.max(...launch))}</title></path>`);
+      y += Math.max(16, samples.length * LAUNCH + 8);
+      return `<text x="${NAMES - 8}" y="${middle}" text-anchor="end">${backend}</text>${ticks.join('')}`;
+    });
+    const label = `The samples of ${name} by launch`;
+    return `<div class="scroll" tabindex="0" role="region" aria-label="Figure: ${label}"><svg role="img" aria-label="${label}"
+      width="${NAMES + LENGTH + 40}" height="${y}" font-size="12" fill="currentColor"><title>${label}</title><desc>Each tick is a sample,
+      each line of ticks a launch; the axis is logarithmic.</desc><text x="${NAMES}" y="12">${duration(least)}</text><text
+      x="${NAMES + LENGTH}" y="12" text-anchor="end">${duration(most)}</text>${lines.join('')}</svg></div>`;
+  };
+  const close = () => {
+    for (const opened of body.querySelectorAll('.samples')) opened.remove();
+    for (const button of body.querySelectorAll('[aria-expanded]')) button.setAttribute('aria-expanded', false);
+  };
+  for (const entry of rows) {
+    if (!entry.cells.some(({samples}) => samples.length)) continue;
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.setAttribute('aria-expanded', false);
+    const header = entry.row.cells[0];
+    button.append(header.firstChild);
+    header.prepend(button);
+    button.addEventListener('click', () => {
+      const isOpen = button.getAttribute('aria-expanded') === 'true';
+      close();
+      if (isOpen) return;
+      button.setAttribute('aria-expanded', true);
+      const opened = document.createElement('tr');
+      opened.className = 'samples';
+      opened.innerHTML = `<td colspan="${entry.cells.length + 1}">${samplesOf(entry)}</td>`;
+      entry.row.after(opened);
+    });
+  }
 
   const headers = [...table.tHead.rows[0].cells];
   let sorted = {column: -1, down: false};
@@ -121,6 +199,7 @@ addEventListener('beforeprint', () => {
       const sign = down ? -1 : 1;
       return sign * (typeof x === 'string' ? x.localeCompare(y) : x - y) || a.place - b.place;
     });
+    close();
     body.append(...order.map(({row}) => row));
     table.classList.toggle('sorted', column >= 0);
     headers.forEach((header, place) => {
@@ -145,6 +224,8 @@ addEventListener('beforeprint', () => {
   }
   for (const control of [group, search]) control.addEventListener('input', filter);
   controls.hidden = false;
+  const hint = document.querySelector('#operations .hint');
+  if (hint) hint.hidden = false;
   draw();
   sort();
   filter();

@@ -7,7 +7,7 @@ use sixfold_results::{Quotient, Standing};
 use super::prose;
 use crate::figure::Table;
 use crate::matrix::{Cell, Line, Matrix, Source};
-use crate::summary::{Rank, Summary, SummaryFigure, bar_length};
+use crate::summary::{Drawing, Rank, Summary, SummaryFigure};
 
 /// Returns the table of the first screen.
 pub(super) fn summary_table(summary: &Summary) -> Markup {
@@ -16,8 +16,8 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
             table.summary {
                 caption {
                     span {
-                        "Times are divided by the shortest of the column; their bars are logarithmic and end at 10 times the least, and \
-                         bars with a gap are longer. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
+                        "Times are divided by the shortest of the column. A dot is a ratio on a logarithmic scale from 1 to 10, the line \
+                         is its interval; an arrow is beyond. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
                          or undecided · ≥: lower bound, not ranked. Memory: the bytes of all tables divided by the vertices, and by the triangles \
                          (or faces); multiply by the number of yours. Its bars begin at 0."
                     }
@@ -51,12 +51,17 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
     let Some(figure) = figure else {
         return html! { td.none { "–" } };
     };
-    let class = match figure.rank {
-        Rank::Bound => "figure bound",
-        _ if figure.is_cut => "figure over",
-        _ => "figure",
+    let (class, style) = match figure.drawing {
+        Drawing::Bar(share) => ("bar", format!("--share:{share:.3}")),
+        Drawing::Dot { ratio, interval } => {
+            let class = match (figure.rank, ratio > END) {
+                (_, true) => "dot over",
+                (Rank::Bound, _) => "dot bound",
+                _ => "dot",
+            };
+            (class, dot_places(ratio, interval))
+        }
     };
-    let style = format!("--share:{:.3}", figure.share);
     html! {
         td class=(class) style=(style) {
             @match figure.rank {
@@ -69,6 +74,18 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
     }
 }
 
+/// The end of the scale of ratios.
+const END: f64 = 10.0;
+
+/// Returns where a dot and its line are, as parts of the scale from 1 to [`END`].
+fn dot_places(ratio: f64, interval: Option<[f64; 2]>) -> String {
+    let place = |ratio: f64| (ratio.ln() / END.ln()).clamp(0.0, 1.0);
+    let line = interval.map_or(String::new(), |[low, high]| {
+        format!(";--from:{:.3};--to:{:.3}", place(low), place(high))
+    });
+    format!("--at:{:.3}{line}", place(ratio))
+}
+
 /// Returns the table of all operations, with the controls that the script shows.
 pub(super) fn operations_table(matrix: &Matrix) -> Markup {
     let mut groups: Vec<&str> = matrix.lines.iter().map(|line| line.group.name()).collect();
@@ -77,7 +94,15 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
         cells.any(|cell| cell.source == source && cell.ratio.is_some())
     };
+    let has_samples = matrix
+        .lines
+        .iter()
+        .flat_map(|line| &line.cells)
+        .any(|cell| !cell.launches.is_empty());
     html! {
+        @if has_samples {
+            p.faint.hint hidden { "Choose an operation to see all its samples." }
+        }
         div.controls hidden {
             label { "compared with"
                 select name="baseline" {
@@ -108,11 +133,11 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
                             "Time divided by that of the fastest, with its " (matrix.confidence)
                             " interval where there are enough samples."
                         }
-                        " A longer bar is slower, on a logarithmic scale that ends at 10 times the shortest; bars with a gap are longer."
-                        @if has(Source::Bound) {
-                            " ≥ with an empty bar: a lower bound, because a run would exceed the budget."
-                        }
-                        @if has(Source::Sampled) { " ~ with a dashed bar: measured on some of the elements." }
+                        " A dot is a ratio on a logarithmic scale "
+                        span.scale { "from 1 to 10" }
+                        ", the line is its interval; an arrow is beyond."
+                        @if has(Source::Bound) { " ≥ with a ring: a lower bound, because a run would exceed the budget." }
+                        @if has(Source::Sampled) { " ~: measured on some of the elements." }
                     }
                 }
                 thead {
@@ -137,10 +162,9 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
 
 fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     let (class, word) = match cell.source {
-        Source::Measured if cell.ratio > Some(10.0) => ("figure over", "measured"),
-        Source::Measured => ("figure", "measured"),
-        Source::Sampled => ("figure sampled", "sampled"),
-        Source::Bound => ("figure bound", "bound"),
+        Source::Measured => ("dot", "measured"),
+        Source::Sampled => ("dot", "sampled"),
+        Source::Bound => ("dot bound", "bound"),
         Source::Impossible => ("none", "impossible"),
         Source::NotRun => ("none", "not run"),
     };
@@ -154,18 +178,21 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
         cell.note(),
     ];
     let title: Vec<String> = title.into_iter().filter(|part| !part.is_empty()).collect();
-    let share = cell
-        .ratio
-        .map(|ratio| format!("--share:{:.4}", bar_length(ratio)));
+    let places = cell.ratio.map(|ratio| dot_places(ratio, cell.interval));
+    let class = match cell.ratio > Some(END) {
+        true => "dot over",
+        false => class,
+    };
     let quotients = (!cell.quotients.is_empty()).then(|| quotients(cell));
     let [low, high] = match cell.ns_interval {
         Some([low, high]) => [Some(low), Some(high)],
         None => [None, None],
     };
     html! {
-        td class=(class) style=[share] title=(title.join("; "))
+        td class=(class) style=[places] title=(title.join("; "))
             data-backend=(cell.backend) data-source=(word)
-            data-ns=[cell.ns] data-low=[low] data-high=[high] data-ratio=[cell.ratio] data-to=[quotients]
+            data-ns=[cell.ns] data-low=[low] data-high=[high] data-ratio=[cell.ratio] data-from=[cell.interval.map(|[low, _]| low)] data-until=[cell.interval.map(|[_, high]| high)]
+            data-to=[quotients] data-samples=[(!cell.launches.is_empty()).then(|| samples_text(cell))]
         {
             @match cell.ratio {
                 Some(_) => {
@@ -185,6 +212,21 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
             }
         }
     }
+}
+
+/// Returns the samples of a cell: the shortest time per element, and for each launch how many thousandths longer each
+/// sample took, such as `5.56 0,12,7 3,4`.
+fn samples_text(cell: &Cell) -> String {
+    let times = cell.launches.iter().flatten();
+    let shortest = times.copied().fold(f64::INFINITY, f64::min);
+    let launches = cell.launches.iter().map(|launch| {
+        let longer = launch
+            .iter()
+            .map(|ns| (1e3 * (ns / shortest - 1.0)).round().to_string());
+        longer.collect::<Vec<_>>().join(",")
+    });
+    let launches: Vec<String> = launches.collect();
+    format!("{shortest:.5e} {}", launches.join(" "))
 }
 
 /// Returns the quotients of the time of a cell and that of each backend, with commas between them. A quotient is

@@ -1,9 +1,11 @@
-//! Tables of ratios for papers, and their form in Markdown.
+//! Tables for papers: ratios, times, memory and meshes, and their form in Markdown.
 
 use std::fmt::Write as _;
 
-use sixfold_results::numbers::{counted, figure as shown, list, rounded_down};
-use sixfold_results::{Confidence, OperationInfo, Pool, Pooled, Report, ResultRow, Results};
+use sixfold_results::numbers::{counted, duration, figure as shown, grouped, list, rounded_down};
+use sixfold_results::{
+    Confidence, OperationInfo, Pool, Pooled, Report, ResultRow, Results, Standing,
+};
 
 use crate::figures::facts;
 use crate::markdown::escape;
@@ -11,71 +13,105 @@ use crate::markdown::escape;
 /// The largest number of meshes that have a table of their own.
 const MAX_MESH_TABLES: usize = 8;
 
-/// A table of the times of backends relative to the fastest backend of each row.
-pub(super) struct RatioTable {
+/// A table with a column for each backend, or for each property of a mesh.
+pub(super) struct PaperTable {
     /// Name of the table in references, such as `mesh-1`.
     pub(super) label: String,
     pub(super) caption: String,
-    /// The names of the backends.
     pub(super) columns: Vec<String>,
-    pub(super) rows: Vec<RatioRow>,
+    pub(super) rows: Vec<PaperRow>,
 }
 
 /// One row of a table, with a cell for each column.
-pub(super) struct RatioRow {
-    /// The operation or the workload.
+pub(super) struct PaperRow {
+    /// The operation, the workload, the table of a structure, or the mesh.
     pub(super) name: String,
-    /// `None` if the backend was not measured.
+    /// Whether there are too few samples to name the fastest.
+    pub(super) provisional: bool,
+    /// `None` if there is nothing, for example because the backend was not measured.
     pub(super) cells: Vec<Option<Cell>>,
 }
 
-/// A ratio to the fastest backend.
+impl PaperRow {
+    fn new(name: impl Into<String>, cells: Vec<Option<Cell>>) -> Self {
+        Self {
+            name: name.into(),
+            provisional: false,
+            cells,
+        }
+    }
+}
+
+/// A number in a table.
 #[derive(Clone, Debug)]
 pub(super) struct Cell {
-    pub(super) ratio: String,
+    pub(super) text: String,
     /// The ends of the interval.
     pub(super) interval: Option<[String; 2]>,
-    /// Whether the ratio is a lower bound.
-    pub(super) bound: bool,
-    /// Whether the backend is the fastest, or shares the first place.
-    pub(super) best: bool,
+    pub(super) kind: Kind,
+}
+
+/// What a number is among those of its row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// One of several.
+    Plain,
+    /// The fastest, or equal to the fastest.
+    Best,
+    /// Perhaps the fastest.
+    Undecided,
+    /// A lower bound.
+    Bound,
 }
 
 impl Cell {
-    fn new(ratio: f64, interval: Option<[f64; 2]>, best: bool) -> Self {
+    fn plain(text: impl Into<String>) -> Self {
         Self {
-            ratio: shown(ratio),
+            text: text.into(),
+            interval: None,
+            kind: Kind::Plain,
+        }
+    }
+
+    fn ratio(ratio: f64, interval: Option<[f64; 2]>, kind: Kind) -> Self {
+        Self {
+            text: shown(ratio),
             // The fastest backend is compared with itself.
             interval: interval
                 .filter(|ends| *ends != [1.0; 2])
                 .map(|ends| ends.map(shown)),
-            bound: false,
-            best,
+            kind,
         }
     }
 
     fn bound(ratio: f64) -> Self {
         Self {
-            ratio: shown(rounded_down(ratio)),
-            interval: None,
-            bound: true,
-            best: false,
+            kind: Kind::Bound,
+            ..Self::plain(shown(rounded_down(ratio)))
         }
     }
 }
 
+/// What bold, italic and other marks mean.
+const MARKS: &str = "Bold: the fastest backend, and backends that are equal to it. Italic: undecided, perhaps the fastest. \
+                     ≥: lower bound, because a run would exceed the budget. –: not measured.";
+/// What the mark of a provisional row means.
+const PROVISIONAL: &str = " †: too few samples to name the fastest.";
+
 /// Returns what the captions of a mesh and of workloads state. `confidence` is that of the intervals.
-fn reading(confidence: &str) -> String {
+fn reading(confidence: &str, rows: &[PaperRow]) -> String {
+    let provisional = match rows.iter().any(|row| row.provisional) {
+        true => PROVISIONAL,
+        false => "",
+    };
     format!(
-        "Times relative to the fastest backend of the row, with {confidence} intervals in brackets. Bold: the fastest \
-         backend, and backends that are equal to it or undecided. ≥: lower bound, because a run would exceed the budget. \
-         –: not measured."
+        "Times relative to the fastest backend of the row, with {confidence} intervals in brackets. {MARKS}{provisional}"
     )
 }
 
 /// Returns the tables of the studies, and of the rankings for workloads. Several studies have a table of
 /// means; if there are at most [`MAX_MESH_TABLES`] studies, each also has its own table.
-pub(super) fn tables(results: &Results) -> Vec<RatioTable> {
+pub(super) fn tables(results: &Results) -> Vec<PaperTable> {
     let studies: Vec<&Report> = results.studies().collect();
     let mut tables = Vec::new();
     if studies.len() > 1 {
@@ -83,32 +119,47 @@ pub(super) fn tables(results: &Results) -> Vec<RatioTable> {
     }
     if studies.len() <= MAX_MESH_TABLES {
         let numbered = studies.iter().enumerate();
-        tables.extend(numbered.map(|(i, study)| of_study(study, i + 1)));
+        tables.extend(numbered.clone().map(|(i, study)| of_study(study, i + 1)));
+        tables.extend(numbered.map(|(i, study)| times(study, i + 1)));
     }
+    tables.push(memory(&studies));
+    tables.push(meshes(&studies));
     tables.push(of_workloads(results));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
 
-fn of_study(study: &Report, number: usize) -> RatioTable {
-    let columns = study.backends.iter().filter(|backend| backend.holds);
-    let columns: Vec<String> = columns.map(|backend| backend.name.clone()).collect();
-    let row = |operation: &OperationInfo| RatioRow {
-        name: operation.name.clone(),
-        cells: columns
-            .iter()
-            .map(|column| cell(study, study.row(&operation.name, column)?))
-            .collect(),
+fn holding(study: &Report) -> Vec<String> {
+    let holding = study.backends.iter().filter(|backend| backend.holds);
+    holding.map(|backend| backend.name.clone()).collect()
+}
+
+fn of_study(study: &Report, number: usize) -> PaperTable {
+    let columns = holding(study);
+    let row = |operation: &OperationInfo| {
+        let open = study.rows(&operation.name);
+        let mut open = open.filter(|row| row.median_ns.is_some() && row.standing.is_none());
+        let cells = columns.iter();
+        PaperRow {
+            provisional: open.any(|row| !row.has_enough_samples()),
+            ..PaperRow::new(
+                &operation.name,
+                cells
+                    .map(|column| cell(study, study.row(&operation.name, column)?))
+                    .collect(),
+            )
+        }
     };
-    RatioTable {
+    let rows = with_cells(study.run.operations.iter().map(row));
+    PaperTable {
         label: format!("mesh-{number}"),
         caption: format!(
             "{}: {} {}",
             study.mesh.name,
             facts(&study.mesh),
-            reading(&study.run.settings.confidence.to_string())
+            reading(&study.run.settings.confidence.to_string(), &rows)
         ),
-        rows: with_cells(study.run.operations.iter().map(row)),
+        rows,
         columns,
     }
 }
@@ -117,11 +168,12 @@ fn of_study(study: &Report, number: usize) -> RatioTable {
 fn cell(study: &Report, row: &ResultRow) -> Option<Cell> {
     if let Some(ratio) = study.shown_ratio(row) {
         let interval = row.ratio_ci_low.zip(row.ratio_ci_high);
-        return Some(Cell::new(
-            ratio,
-            interval.map(|(a, b)| [a, b]),
-            row.is_fastest(),
-        ));
+        let kind = match row.standing {
+            Some(Standing::Undecided) => Kind::Undecided,
+            _ if row.is_fastest() => Kind::Best,
+            _ => Kind::Plain,
+        };
+        return Some(Cell::ratio(ratio, interval.map(|(a, b)| [a, b]), kind));
     }
     let bound = row.median_ns.is_none().then_some(row.estimated_ns?)?;
     let mut rows = study.rows(&row.operation);
@@ -130,33 +182,125 @@ fn cell(study: &Report, row: &ResultRow) -> Option<Cell> {
     (bound > best).then(|| Cell::bound(bound / best))
 }
 
-fn means(pool: &Pool, confidence: Confidence) -> RatioTable {
+/// The units of times in nanoseconds; a unit that ends like another one comes first.
+const UNITS: [(&str, f64); 4] = [(" ns", 1.0), (" µs", 1e3), (" ms", 1e6), (" s", 1e9)];
+
+/// Returns the table of the times per element of a study.
+fn times(study: &Report, number: usize) -> PaperTable {
+    let columns = holding(study);
+    let row = |operation: &OperationInfo| {
+        let cell = |column: &String| {
+            let row = study.row(&operation.name, column)?;
+            let each = |ns: f64| Some(ns / row.elements.filter(|&n| n > 0)? as f64);
+            let Some(ns) = row.ns_per_element else {
+                return Some(Cell {
+                    kind: Kind::Bound,
+                    ..Cell::plain(duration(rounded_down(each(row.estimated_ns?)?)))
+                });
+            };
+            let ends = row.ci_low_ns.zip(row.ci_high_ns);
+            let ends = ends.and_then(|(low, high)| Some([each(low)?, each(high)?]));
+            let text = duration(ns);
+            // In the unit of the time, which is written once.
+            let size = UNITS.into_iter().find(|(unit, _)| text.ends_with(unit))?.1;
+            Some(Cell {
+                interval: ends.map(|ends| ends.map(|end| shown(end / size))),
+                ..Cell::plain(text)
+            })
+        };
+        let unit = study.rows(&operation.name).next().map(|row| &row.per);
+        let name = unit.map_or_else(
+            || operation.name.clone(),
+            |unit| format!("{}, per {unit}", operation.name),
+        );
+        PaperRow::new(name, columns.iter().map(cell).collect())
+    };
+    PaperTable {
+        label: format!("times-{number}"),
+        caption: format!(
+            "{}: times per element, with {} intervals in brackets, in the same unit. ≥: lower bound. –: not measured.",
+            study.mesh.name, study.run.settings.confidence
+        ),
+        rows: with_cells(study.run.operations.iter().map(row)),
+        columns,
+    }
+}
+
+/// Returns the table of the bytes per vertex of each backend on each mesh.
+fn memory(studies: &[&Report]) -> PaperTable {
+    let mut columns: Vec<String> = Vec::new();
+    for backend in studies.iter().flat_map(|study| &study.backends) {
+        if backend.bytes_per_vertex.is_some() && !columns.contains(&backend.name) {
+            columns.push(backend.name.clone());
+        }
+    }
+    let row = |study: &&Report| {
+        let bytes = |column: &String| {
+            let backend = study
+                .backends
+                .iter()
+                .find(|backend| backend.name == *column)?;
+            Some(Cell::plain(shown(backend.bytes_per_vertex?)))
+        };
+        PaperRow::new(&study.mesh.name, columns.iter().map(bytes).collect())
+    };
+    PaperTable {
+        label: "memory".into(),
+        caption: "Bytes of all tables of each backend, with spare capacity, divided by the number of vertices. –: the \
+                  backend cannot hold the mesh, or its size is not known."
+            .into(),
+        rows: with_cells(studies.iter().map(row)),
+        columns,
+    }
+}
+
+/// Returns the table of the meshes.
+fn meshes(studies: &[&Report]) -> PaperTable {
+    let row = |study: &&Report| {
+        let facts = &study.mesh.facts;
+        let edges = facts.edges;
+        let numbers = [facts.vertices, edges, facts.faces].map(|n| Some(Cell::plain(grouped(n))));
+        let closed = if facts.closed { "closed" } else { "boundary" };
+        let hash = study.mesh.sha256.get(..8).unwrap_or_default();
+        let words = [closed, hash].map(|word| Some(Cell::plain(word)));
+        PaperRow::new(&study.mesh.name, numbers.into_iter().chain(words).collect())
+    };
+    PaperTable {
+        label: "meshes".into(),
+        caption: "The meshes: their elements, whether they have a boundary, and the first digits of the SHA-256 of their \
+                  positions and faces."
+            .into(),
+        columns: ["vertices", "edges", "faces", "kind", "SHA-256"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: studies.iter().map(row).collect(),
+    }
+}
+
+fn means(pool: &Pool, confidence: Confidence) -> PaperTable {
     let columns = pool.compared.clone();
     let row = |rows: &[Pooled]| {
         let measured = rows.iter().filter(|row| row.estimated == 0);
-        let smallest = measured
-            .map(|row| row.ratio_to_best)
-            .fold(f64::INFINITY, f64::min);
+        let smallest = measured.min_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
         let cell = |column: &String| {
             let row = rows.iter().find(|row| row.backend == *column)?;
             let interval = row.ci_low.zip(row.ci_high).map(|(a, b)| [a, b]);
             Some(match row.estimated {
-                0 => Cell::new(row.ratio_to_best, interval, row.ratio_to_best == smallest),
+                0 => Cell::ratio(row.ratio_to_best, interval, kind_of_mean(row, smallest?)),
                 _ => Cell::bound(row.ratio_to_best),
             })
         };
-        RatioRow {
-            name: rows[0].operation.clone(),
-            cells: columns.iter().map(cell).collect(),
-        }
+        let cells = columns.iter().map(cell).collect();
+        PaperRow::new(&rows[0].operation, cells)
     };
     let meshes = pool.groups.first().map_or(0, |all| all.meshes.len());
-    RatioTable {
+    PaperTable {
         label: "means".into(),
         caption: format!(
             "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh, with \
-             {confidence} intervals in brackets. Bold: the smallest mean. ≥: lower bound, because a run on a mesh would \
-             exceed the budget. –: not measured.",
+             {confidence} intervals in brackets. Each power of ten of the number of faces has the same weight. Bold: the \
+             smallest mean, if it is the fastest on every mesh. Italic: a mean that is as small as the smallest on some \
+             meshes. ≥: lower bound, because a run on a mesh would exceed the budget. –: not measured.",
             counted(meshes, "mesh", "meshes")
         ),
         rows: with_cells(
@@ -168,8 +312,17 @@ fn means(pool: &Pool, confidence: Confidence) -> RatioTable {
     }
 }
 
+/// Returns what a mean is. Nothing is decided by the smallest mean if another backend is the fastest on some mesh.
+fn kind_of_mean(row: &Pooled, smallest: &Pooled) -> Kind {
+    match (row.best, row.tied) {
+        (best, _) if best == row.meshes => Kind::Best,
+        (0, 0) if row.backend != smallest.backend => Kind::Plain,
+        _ => Kind::Undecided,
+    }
+}
+
 /// Returns a table with a row for each ranking of a workload.
-fn of_workloads(results: &Results) -> RatioTable {
+fn of_workloads(results: &Results) -> PaperTable {
     let mut columns: Vec<String> = Vec::new();
     for ranked in results.picks().flat_map(|pick| &pick.ranking) {
         if !columns.contains(&ranked.backend) {
@@ -184,17 +337,27 @@ fn of_workloads(results: &Results) -> RatioTable {
                 .iter()
                 .find(|ranked| ranked.backend == *column)?;
             let interval = ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]);
-            let best = ranked.ratio_to_best == 1.0 || ranked.tied_with_best;
+            let shared = pick.ranking.iter().any(|ranked| ranked.tied_with_best);
+            let kind = match ranked.ratio_to_best == 1.0 {
+                _ if ranked.tied_with_best => Kind::Undecided,
+                true if shared => Kind::Undecided,
+                true => Kind::Best,
+                false => Kind::Plain,
+            };
             Some(match ranked.estimated {
                 true => Cell::bound(ranked.ratio_to_best),
-                false => Cell::new(ranked.ratio_to_best, interval, best),
+                false => Cell::ratio(ranked.ratio_to_best, interval, kind),
             })
         };
-        RatioRow {
-            name: format!("{} on {}", pick.workload.name, meshes.join(", ")),
-            cells: columns.iter().map(cell).collect(),
+        PaperRow {
+            provisional: pick.preliminary,
+            ..PaperRow::new(
+                format!("{} on {}", pick.workload.name, meshes.join(", ")),
+                columns.iter().map(cell).collect(),
+            )
         }
     });
+    let rows = with_cells(rows);
     let mut confidences: Vec<String> = Vec::new();
     for pick in results.picks() {
         let confidence = pick.run.settings.confidence.to_string();
@@ -202,22 +365,22 @@ fn of_workloads(results: &Results) -> RatioTable {
             confidences.push(confidence);
         }
     }
-    RatioTable {
+    PaperTable {
         label: "workloads".into(),
-        caption: format!("Workloads. {}", reading(&list(confidences))),
-        rows: with_cells(rows),
+        caption: format!("Workloads. {}", reading(&list(confidences), &rows)),
+        rows,
         columns: columns.clone(),
     }
 }
 
 /// Returns the rows with at least one cell.
-fn with_cells(rows: impl Iterator<Item = RatioRow>) -> Vec<RatioRow> {
+fn with_cells(rows: impl Iterator<Item = PaperRow>) -> Vec<PaperRow> {
     rows.filter(|row| row.cells.iter().any(Option::is_some))
         .collect()
 }
 
 /// Returns the tables as Markdown.
-pub(super) fn markdown(tables: &[RatioTable]) -> String {
+pub(super) fn markdown(tables: &[PaperTable]) -> String {
     let mut text = "# Results\n".to_owned();
     if tables.is_empty() {
         text.push_str("\nThe results have no times that are compared.\n");
@@ -229,7 +392,13 @@ pub(super) fn markdown(tables: &[RatioTable]) -> String {
         let _ = writeln!(text, "|---|{}", "---:|".repeat(names.len()));
         for row in &table.rows {
             let cells: Vec<String> = row.cells.iter().map(markdown_cell).collect();
-            let _ = writeln!(text, "| {} | {} |", escape(&row.name), cells.join(" | "));
+            let mark = if row.provisional { " †" } else { "" };
+            let _ = writeln!(
+                text,
+                "| {}{mark} | {} |",
+                escape(&row.name),
+                cells.join(" | ")
+            );
         }
     }
     text
@@ -241,9 +410,11 @@ fn markdown_cell(cell: &Option<Cell>) -> String {
     };
     let interval = cell.interval.as_ref();
     let interval = interval.map_or_else(String::new, |[low, high]| format!(" [{low}, {high}]"));
-    match (cell.bound, cell.best) {
-        (true, _) => format!("≥ {}", cell.ratio),
-        (false, true) => format!("**{}**{interval}", cell.ratio),
-        (false, false) => format!("{}{interval}", cell.ratio),
+    let text = &cell.text;
+    match cell.kind {
+        Kind::Bound => format!("≥ {text}"),
+        Kind::Best => format!("**{text}**{interval}"),
+        Kind::Undecided => format!("*{text}*{interval}"),
+        Kind::Plain => format!("{text}{interval}"),
     }
 }

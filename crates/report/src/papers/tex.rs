@@ -2,69 +2,135 @@
 
 use std::fmt::Write as _;
 
-use super::tables::{Cell, RatioRow, RatioTable};
+use super::tables::{Cell, Kind, PaperRow, PaperTable};
 
 /// The comment at the top of the file.
-const HEAD: &str =
-    "% Tables of times relative to the fastest backend, made by `sixfold` from the results.
-% In the preamble: \\usepackage{booktabs}. In the text: \\input{results.tex}.
+const HEAD: &str = "% Tables of times, memory and meshes, made by `sixfold` from the results.
+% In the preamble: \\usepackage{booktabs,longtable}. In the text: \\input{results.tex}.
 % Names of meshes in scripts other than Latin need XeLaTeX or LuaLaTeX.
 ";
 
 /// Returns the tables as a file for `\input`.
-pub(super) fn document(tables: &[RatioTable]) -> String {
+pub(super) fn document(tables: &[PaperTable]) -> String {
     let mut text = HEAD.to_owned();
     if tables.is_empty() {
         text.push_str("% The results have no times that are compared.\n");
     }
     for table in tables {
-        write_table(&mut text, table);
+        for part in parts(table) {
+            write_table(&mut text, &part);
+        }
     }
     text
 }
 
-fn write_table(text: &mut String, table: &RatioTable) {
+/// A table with more columns is wider than a page.
+const MOST_COLUMNS: usize = 6;
+
+/// Divides a wide table into tables with equally many columns.
+fn parts(table: &PaperTable) -> Vec<PaperTable> {
+    let columns = table.columns.len();
+    let count = columns.div_ceil(MOST_COLUMNS).max(1);
+    let each = columns.div_ceil(count).max(1);
+    let part = |number: usize| {
+        let of = number * each..columns.min((number + 1) * each);
+        let rows = table.rows.iter().map(|row| PaperRow {
+            name: row.name.clone(),
+            provisional: row.provisional,
+            cells: row.cells[of.clone()].to_vec(),
+        });
+        let (label, caption) = match count {
+            1 => (table.label.clone(), table.caption.clone()),
+            _ => (
+                format!("{}-part-{}", table.label, number + 1),
+                format!("Part {} of {count}. {}", number + 1, table.caption),
+            ),
+        };
+        PaperTable {
+            label,
+            caption,
+            rows: rows.collect(),
+            columns: table.columns[of.clone()].to_vec(),
+        }
+    };
+    (0..count).map(part).collect()
+}
+
+/// A table with more rows can be longer than a page.
+const MOST_ROWS: usize = 15;
+
+fn write_table(text: &mut String, table: &PaperTable) {
     let heads: Vec<String> = table.columns.iter().map(|name| column_head(name)).collect();
-    let _ = write!(
-        text,
-        "\n\\begin{{table}}\n\\centering\\footnotesize\\setlength{{\\tabcolsep}}{{3pt}}\n\
-         \\setlength{{\\belowcaptionskip}}{{4pt}}\n\
-         \\caption{{{}}}\n\\label{{tab:sixfold-{}}}\n\
-         \\begin{{tabular}}{{@{{}}l{}@{{}}}}\n\\toprule\n & {} \\\\\n\\midrule\n",
-        escape(&table.caption),
-        table.label,
-        "r".repeat(table.columns.len()),
-        heads.join(" & "),
-    );
+    let (head, caption) = (heads.join(" & "), escape(&table.caption));
+    let columns = format!("@{{}}l{}@{{}}", "r".repeat(table.columns.len()));
+    let (start, end) = match table.rows.len() > MOST_ROWS {
+        true => (
+            format!(
+                "{{\\footnotesize\\setlength{{\\tabcolsep}}{{3pt}}\n\\begin{{longtable}}{{{columns}}}\n\
+                 \\caption{{{caption}}}\\label{{tab:sixfold-{}}}\\\\\n\\toprule\n & {head} \\\\\n\\midrule\n\\endfirsthead\n\
+                 \\toprule\n & {head} \\\\\n\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n",
+                table.label
+            ),
+            "\\end{longtable}}\n",
+        ),
+        false => (
+            format!(
+                "\\begin{{table}}\n\\centering\\footnotesize\\setlength{{\\tabcolsep}}{{3pt}}\n\
+                 \\setlength{{\\belowcaptionskip}}{{4pt}}\n\\caption{{{caption}}}\n\\label{{tab:sixfold-{}}}\n\
+                 \\begin{{tabular}}{{{columns}}}\n\\toprule\n & {head} \\\\\n\\midrule\n",
+                table.label
+            ),
+            "\\bottomrule\n\\end{tabular}\n\\end{table}\n",
+        ),
+    };
+    let _ = write!(text, "\n{start}");
     for row in &table.rows {
         write_row(text, row);
     }
-    text.push_str("\\bottomrule\n\\end{tabular}\n\\end{table}\n");
+    text.push_str(end);
 }
 
-/// Writes a line of ratios, and below it a line of intervals if there are any.
-fn write_row(text: &mut String, row: &RatioRow) {
-    let ratios: Vec<String> = row.cells.iter().map(ratio).collect();
-    let _ = writeln!(text, "{} & {} \\\\", escape(&row.name), ratios.join(" & "));
-    let interval = |cell: &Option<Cell>| cell.as_ref()?.interval.clone();
-    let intervals = row.cells.iter().map(interval);
-    if intervals.clone().all(|interval| interval.is_none()) {
+/// Writes a line of numbers, and below it a line of intervals if there are any.
+fn write_row(text: &mut String, row: &PaperRow) {
+    let numbers: Vec<String> = row.cells.iter().map(number).collect();
+    let mark = if row.provisional {
+        "\\,$^\\dagger$"
+    } else {
+        ""
+    };
+    let intervals = row
+        .cells
+        .iter()
+        .map(|cell| cell.as_ref()?.interval.as_ref());
+    let has_intervals = intervals.clone().any(|interval| interval.is_some());
+    // The two lines stay on one page.
+    let end = if has_intervals { "\\\\*" } else { "\\\\" };
+    let name = escape(&row.name);
+    let _ = writeln!(text, "{name}{mark} & {} {end}", numbers.join(" & "));
+    if !has_intervals {
         return;
     }
     let intervals = intervals.map(|interval| match interval {
-        Some([low, high]) => format!("{{\\tiny [{low}, {high}]}}"),
+        Some(ends) => {
+            let [low, high] = ends.each_ref().map(|end| escape(end));
+            format!("{{\\scriptsize [{low}--{high}]}}")
+        }
         None => String::new(),
     });
     let intervals: Vec<String> = intervals.collect();
     let _ = writeln!(text, " & {} \\\\", intervals.join(" & "));
 }
 
-fn ratio(cell: &Option<Cell>) -> String {
-    match cell {
-        None => "--".into(),
-        Some(cell) if cell.bound => format!("$\\ge$ {}", cell.ratio),
-        Some(cell) if cell.best => format!("\\textbf{{{}}}", cell.ratio),
-        Some(cell) => cell.ratio.clone(),
+fn number(cell: &Option<Cell>) -> String {
+    let Some(cell) = cell else {
+        return "--".into();
+    };
+    let text = escape(&cell.text);
+    match cell.kind {
+        Kind::Bound => format!("$\\ge$ {text}"),
+        Kind::Best => format!("\\textbf{{{text}}}"),
+        Kind::Undecided => format!("\\textit{{{text}}}"),
+        Kind::Plain => text,
     }
 }
 
@@ -97,6 +163,8 @@ pub(super) fn escape(text: &str) -> String {
             '≥' => plain.push_str("$\\ge$"),
             '×' => plain.push_str("$\\times$"),
             '–' => plain.push_str("--"),
+            '†' => plain.push_str("$^\\dagger$"),
+            'µ' => plain.push_str("$\\mu$"),
             '\u{a0}' | '\u{202f}' => plain.push('~'),
             c if c.is_control() => plain.push(' '),
             c => plain.push(c),

@@ -191,13 +191,13 @@ fn tables_mark_the_best_and_lower_bounds_and_missing_times() {
     let files = paper(&all);
     let tex = text(&files, "results.tex");
     // The order of the backends is that of the study.
-    let line = "vertex\\_normal & $\\ge$ 123 & 2.00 & -- & 2.00 & \\textbf{1.00} & 2.00 \\\\\n";
+    let line = "vertex\\_normal & $\\ge$ 123 & 2.00 & -- & 2.00 & \\textbf{1.00} & 2.00 \\\\*\n";
     assert!(tex.contains(line), "{tex}");
-    assert!(tex.contains("{\\tiny [1.50, 2.50]}"), "{tex}");
+    assert!(tex.contains("{\\scriptsize [1.50--2.50]}"), "{tex}");
     let name = "a\\_\\&\\%\\#\\$b\\{c\\}\\textasciitilde{}\\textasciicircum{}\\textbackslash{}\\textbar{}.obj";
     assert!(tex.contains(name), "{tex}");
     for part in [
-        "\\usepackage{booktabs}",
+        "\\usepackage{booktabs,longtable}",
         "\\toprule",
         "\\midrule",
         "\\bottomrule",
@@ -218,7 +218,9 @@ fn tables_mark_the_best_and_lower_bounds_and_missing_times() {
 fn several_meshes_have_a_table_of_means() {
     let files = paper(&results(&["a.obj", "b.obj"]));
     let tex = text(&files, "results.tex");
-    for label in ["means", "mesh-1", "mesh-2"] {
+    for label in [
+        "means", "mesh-1", "mesh-2", "times-1", "times-2", "memory", "meshes",
+    ] {
         let label = format!("\\label{{tab:sixfold-{label}}}");
         assert_eq!(tex.matches(&label).count(), 1, "{label}");
     }

@@ -185,15 +185,19 @@ impl Folder {
         let csv = output("results.csv").and_then(|o| o.finish(|w| results.write_csv(w)));
         let samples = output("samples.csv");
         let samples = samples.and_then(|o| o.finish(|w| results.write_samples_csv(w)));
-        let page = self.write_page(results, command);
+        let mut page = ReportPage::new(results, command);
+        page.data = Some("results.json".into());
+        let page = self.write(&page);
         json.and(csv).and(samples).and(page)
     }
 
     /// Writes only the page and the figures.
     pub(super) fn write_page(&self, results: &Results, command: &str) -> Result<(), Failure> {
-        let results = &*results.without_folders();
+        self.write(&ReportPage::new(&results.without_folders(), command))
+    }
+
+    fn write(&self, page: &ReportPage) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
-        let page = ReportPage::new(results, command);
         let old_figures = self.linked_figures();
         let figures = self.path.join("figures");
         fs::create_dir_all(&figures)
