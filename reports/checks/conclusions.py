@@ -1,6 +1,7 @@
 """The claims of reports/README.md."""
 
 import math
+import statistics
 
 from checks import advice, beside, data, figures, neighbours, repeatability, workload_table
 from checks.claims import Claims
@@ -38,6 +39,7 @@ page = Claims(
         measures one structure twice
         share the first place
         shares the first place
+        width="260"
     """,
 )
 
@@ -382,6 +384,69 @@ for program, kind in advice.ROWS.items():
 
 
 EXAMPLES = ("reports/editing/editing.json", "reports/subdivision/subdivision.json")
+ANSWER = "reports/built-in-mesh/report.md"
+
+
+@page.says(
+    "Half-edge is fastest for queries and for subdivision, corner table for edits, and indexed face set to build."
+)
+def answer_of_study():
+    expected = {"Queries": "half-edge", "Subdivision": "half-edge", "Edits": "corner-table", "Building": "indexed-face-set"}
+    for work, winner in expected.items():
+        [found] = data.quoted(ANSWER, rf"- {work}: ([a-z-]+); ")
+        data.require(found == winner, f"{work}: {found}")
+
+
+@page.says(
+    "Relation tables are fastest on the built-in mesh in most workloads that query neighbours, and no structure is fastest in all "
+    "workloads."
+)
+def answer_of_workloads():
+    fastest = {name: data.workload(name, BUILT_IN).found["ranking"][0]["backend"] for name in data.workload_names()}
+    local = [fastest[name] for name in advice.ROWS["queries neighbours, and keeps its connectivity (vertices may move)"].workloads]
+    data.require(local.count("relation-tables") > len(local) / 2, f"{local}")
+    data.require(len(set(fastest.values())) > 1, f"{fastest}")
+
+
+@page.says("Random order costs half-edge more time than the choice of another structure for vertex neighbours.")
+def answer_of_orders():
+    rows = [row for row in data.finding(ORDERS, "orders")["results"] if row["operation"] == "vertex_vertices"]
+    best = {}
+    for row in rows:
+        known = best.setdefault(row["backend"], [])
+        known.append(row["ns_per_element"])
+    own = best["half-edge"]
+    others = [min(best[name]) for name in LOCAL if name != "half-edge"]
+    data.require(max(own) / min(own) > max(others) / min(own), f"{best}")
+
+
+@page.says(
+    "In the original order, the time for the neighbours of all vertices grows with the square of the number of faces if the "
+    "structure scans, and in proportion to it otherwise."
+)
+def answer_of_growth():
+    fits = data.finding(GROWTH["given"], "growth")["fits"]
+    of = lambda names: [fit for fit in fits if fit["backend"] in names and fit["operation"] == "vertex_vertices" and fit["all"]]
+    data.require(all(1.9 < fit["all"]["exponent"] < 2.2 for fit in of(SCANNING)), "the exponents of scans")
+    data.require(all(0.9 < fit["all"]["exponent"] < 1.15 for fit in of(LOCAL)), "the exponents of the others")
+
+
+@page.says(
+    "No library but OpenSubdiv, whose relations cannot be edited, is as fast as half-edge on average over the nine relations."
+)
+def answer_of_libraries():
+    faster, equal = beside.faster()
+    data.require([*faster, *equal] == ["opensubdiv"], f"{faster}, {equal}")
+
+
+@page.says("In both schemes, a structure that splits its own tables (`native`) is fastest.")
+def answer_of_subdivision():
+    rows = data.document(EXAMPLES[1])["results"]
+    for scheme in {row["scheme"] for row in rows}:
+        last = max(row["level"] for row in rows if row["scheme"] == scheme)
+        here = [row for row in rows if (row["scheme"], row["level"]) == (scheme, last)]
+        fastest = min(here, key=lambda row: statistics.median(row["cpu_ns"]))
+        data.require(fastest["way"].startswith("native"), f"{fastest}")
 
 
 @page.says(
