@@ -194,7 +194,8 @@ ROWS = {
 # The picture: the kinds of its rows, and its measures.
 DRAWN = [kind for kind in ROWS.values() if kind.title]
 PICTURE = "reports/workloads/advice.svg"
-NAMES, COLUMN, HEAD, ROW = 300, 104, 26, 21
+# So narrow that a phone shows it at readable size.
+NAMES, COLUMN, HEAD, TITLE, ROW = 122, 48, 48, 22, 21
 # From dark to light, for ratios from 1 to 1,000 on a logarithmic scale: points of the colour map viridis of van der Walt and
 # Smith (2015).
 COLOURS = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
@@ -210,28 +211,41 @@ def colour(share):
 
 def picture():
     """Returns a heat map as SVG: the means of each kind of program on each mesh, relative to the least."""
-    width, height = NAMES + COLUMN * len(BACKENDS), HEAD + sum(ROW * len(kind.meshes) + 6 for kind in DRAWN)
+    width, height = NAMES + COLUMN * len(BACKENDS), HEAD + sum(TITLE + ROW * len(kind.meshes) + 6 for kind in DRAWN)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
+        "<title>Time of each kind of program on each backend, relative to the fastest of its row</title>",
+        "<desc>Dark is fast. Bold: the fastest. Hatched: perhaps the fastest, because its interval contains 1.</desc>",
+        *[f'<pattern id="{name}" width="5" height="5" patternUnits="userSpaceOnUse"><path d="M-1 6L6 -1" stroke="{ink}"/></pattern>'
+          for name, ink in (("white", "#fff"), ("black", "#000"))],
         f'<rect width="{width}" height="{height}" fill="#fff"/>',
     ]
     text = lambda x, y, content, more: parts.append(f'<text x="{x}" y="{y}" {more}>{content}</text>')
     for column, backend in enumerate(BACKENDS):
-        text(NAMES + COLUMN * (column + 0.5), HEAD - 8, plain(backend), 'text-anchor="middle"')
+        words = plain(backend).replace("-", "- ").split(" ")
+        for line, word in enumerate(reversed(words)):
+            text(NAMES + COLUMN * (column + 0.5), HEAD - 8 - 13 * line, word, 'text-anchor="middle" font-size="11"')
     y = HEAD
     for kind in DRAWN:
+        text(4, y + 16, kind.title, 'font-weight="bold"')
+        y += TITLE
         for mesh in kind.meshes:
             found = means(kind.on(mesh), kind.candidates_on(mesh))
-            text(NAMES - 8, y + 15, f"{kind.title}, {NAMES_OF_MESHES[mesh]}", 'text-anchor="end"')
+            text(NAMES - 8, y + 15, NAMES_OF_MESHES[mesh], 'text-anchor="end"')
             for column, backend in enumerate(BACKENDS):
                 x, ratio = NAMES + COLUMN * column, found.get(backend)
                 share = min(math.log10(max(ratio.value, 1)) / 3, 1) if ratio else 0
                 fill = f'fill="{colour(share)}"' if ratio else 'fill="none" stroke="#ccc"'
                 parts.append(f'<rect x="{x + 1}" y="{y + 1}" width="{COLUMN - 2}" height="{ROW - 2}" {fill}/>')
-                ink = "#fff" if ratio and share < 0.55 else "#000" if ratio else "#888"
-                bound = "≥ " if ratio and ratio.low is None else ""
+                ink = "#fff" if ratio and share < 0.45 else "#000" if ratio else "#888"
+                if ratio and ratio.value > 1 and ratio.low is not None and ratio.low <= 1:
+                    name = "white" if ink == "#fff" else "black"
+                    for left in (x + 1, x + COLUMN - 8):
+                        parts.append(f'<rect x="{left}" y="{y + 1}" width="7" height="{ROW - 2}" fill="url(#{name})"/>')
+                bound = "≥" if ratio and ratio.low is None else ""
                 shown = f"{bound}{figures.ratio(ratio.value)}" if ratio else "–"
-                text(x + COLUMN / 2, y + 15, shown, f'text-anchor="middle" fill="{ink}"')
+                weight = ' font-weight="bold"' if ratio and ratio.value == 1 else ""
+                text(x + COLUMN / 2, y + 15, shown, f'text-anchor="middle" fill="{ink}"{weight}')
             y += ROW
         y += 6
     return "\n".join([*parts, "</svg>"]) + "\n"
