@@ -202,7 +202,10 @@ fn faults_of_a_program_exclude_the_structure_with_the_reason() {
     let message = "the program panicked: no such side (at crates/measure/tests/all/programs.rs:";
     assert!(reason.starts_with(message), "{reason}");
     assert_eq!(panics.excluded[0].backend, "half-edge");
-    for (report, reason) in [(not_a_number, "NaN"), (idle, "no work")] {
+    for (report, reason) in [
+        (not_a_number, "the checksum of the program is NaN"),
+        (idle, "no work"),
+    ] {
         assert!(report.ranking.is_empty());
         assert_eq!(report.choice, None);
         let reasons = reasons(report);
