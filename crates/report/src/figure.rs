@@ -33,11 +33,6 @@ impl Figure {
         self.picture.svg(&self.caption)
     }
 
-    /// Returns the picture as an SVG file in the colours of the light mode, for paper.
-    pub fn light_svg(&self) -> String {
-        self.picture.light_svg(&self.caption)
-    }
-
     pub(crate) fn with_csv(self, csv: String) -> Self {
         Self { csv, ..self }
     }

@@ -44,7 +44,7 @@ pub use figure::{Figure, Table, TitledTable};
 pub use figures::machine;
 pub use html::GENERATOR;
 pub use panels::{Panel, panels};
-pub use papers::{NoPdf, PaperFile, PaperFiles};
+pub use papers::{NoPdf, PaperFile, PaperFiles, Wider};
 pub use pdf::PdfError;
 pub use picture::Picture;
 pub use summary::{Drawing, Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};

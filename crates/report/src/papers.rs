@@ -32,13 +32,27 @@ impl PaperFile {
 }
 
 /// The files for a paper, and the figures without a PDF file.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PaperFiles {
     /// The files.
     pub files: Vec<PaperFile>,
     /// The PDF files that are missing.
     pub missing: Vec<NoPdf>,
+    /// The figures that are wider than asked for, because their letters would be too small.
+    pub wider: Vec<Wider>,
 }
+
+/// A figure is wider than asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wider {
+    /// The id of the figure.
+    pub id: String,
+    /// The width of its files in millimetres.
+    pub mm: f64,
+}
+
+/// Points of a millimetre.
+const POINTS_OF_MM: f64 = 72.0 / 25.4;
 
 /// A figure has no PDF file. Its other files are complete.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -59,8 +73,8 @@ impl ReportPage {
     /// [`Figure::csv`]) and `ID.txt` (the caption), where ID is the `id` of the
     /// figure. `results.tex` and `results.md` have the same tables, and `methods.md` describes how the results
     /// were measured.
-    pub fn paper(&self, results: &Results) -> PaperFiles {
-        let mut paper = self.figure_files();
+    pub fn paper(&self, results: &Results, mm: Option<f64>) -> PaperFiles {
+        let mut paper = self.figure_files(mm);
         let tables = tables::tables(results);
         paper.files.extend([
             PaperFile::new("results.tex", tex::document(&tables)),
@@ -72,20 +86,37 @@ impl ReportPage {
 
     /// Returns the files of each figure for a paper: `ID.svg`, `ID.pdf`, `ID.csv` and `ID.txt`. The PDF file is
     /// left out if the font of PDF files does not have all letters of the picture.
-    pub fn figure_files(&self) -> PaperFiles {
+    ///
+    /// With a width in millimetres, the panels of a figure are arranged for this width, and the figure is divided into
+    /// files that are at most a page high, `ID-1.svg` and so on. No letter is smaller than 7 points: a figure that cannot
+    /// be read at this width is wider.
+    pub fn figure_files(&self, mm: Option<f64>) -> PaperFiles {
         let mut paper = PaperFiles::default();
         for figure in self.all_figures() {
-            let id = &figure.id;
-            let files = &mut paper.files;
-            let svg = figure.light_svg();
-            files.push(PaperFile::new(format!("{id}.svg"), svg));
-            match figure.picture.pdf() {
-                Ok(pdf) => files.push(PaperFile::new(format!("{id}.pdf"), pdf)),
-                Err(cause) => paper.missing.push(NoPdf {
+            let Figure { id, picture, .. } = figure;
+            let width = mm.map(|mm| mm * POINTS_OF_MM);
+            let sheets = width.map_or_else(|| vec![picture.whole()], |width| picture.sheets(width));
+            let widest = sheets.iter().map(|sheet| sheet.points()[0]);
+            let widest = widest.fold(0.0, f64::max);
+            if width.is_some_and(|width| widest > width + 0.5) {
+                paper.wider.push(Wider {
                     id: id.clone(),
-                    cause,
-                }),
+                    mm: widest / POINTS_OF_MM,
+                });
             }
+            for (number, sheet) in sheets.iter().enumerate() {
+                let name = match sheets.len() {
+                    1 => id.clone(),
+                    _ => format!("{id}-{}", number + 1),
+                };
+                let svg = picture.light_svg(sheet, &figure.caption);
+                paper.files.push(PaperFile::new(format!("{name}.svg"), svg));
+                match picture.pdf(sheet) {
+                    Ok(pdf) => paper.files.push(PaperFile::new(format!("{name}.pdf"), pdf)),
+                    Err(cause) => paper.missing.push(NoPdf { id: name, cause }),
+                }
+            }
+            let files = &mut paper.files;
             files.push(PaperFile::new(format!("{id}.csv"), &*figure.csv));
             files.push(PaperFile::new(format!("{id}.txt"), caption(figure)));
         }

@@ -45,13 +45,14 @@ const COMPRESSION: u8 = 6;
 /// part of the radius.
 const CURVE: f32 = 0.552_285;
 
-/// Returns a PDF file of one page of the given size with `panels`, each moved to its place.
+/// Returns a PDF file of one page of the given size with `panels`, each moved to its place. A pixel is `scale` points.
 ///
 /// # Errors
 ///
 /// Returns an error if the font has no glyph for a letter of a text.
 pub(crate) fn file(
     [width, height]: [f64; 2],
+    scale: f64,
     panels: &[([f64; 2], &Canvas)],
     title: &str,
 ) -> Result<Vec<u8>, PdfError> {
@@ -61,7 +62,8 @@ pub(crate) fn file(
         missing: BTreeSet::new(),
     };
     // From here, coordinates go down, as in the shapes.
-    let flip = [1.0, 0.0, 0.0, -1.0, 0.0, height as f32];
+    let scale = scale as f32;
+    let flip = [scale, 0.0, 0.0, -scale, 0.0, height as f32 * scale];
     page.content.transform(flip);
     page.set_fill(BACKGROUND);
     page.content.rect(0.0, 0.0, width as f32, height as f32);
@@ -77,7 +79,7 @@ pub(crate) fn file(
         let letters = page.missing.into_iter().collect();
         return Err(PdfError::MissingLetters { letters });
     }
-    Ok(page.into_file([width as f32, height as f32], title))
+    Ok(page.into_file([width as f32 * scale, height as f32 * scale], title))
 }
 
 /// A page that is being drawn.
@@ -357,7 +359,7 @@ mod tests {
 
     fn written(canvas: &Canvas) -> Vec<u8> {
         let panels = [([0.0, 0.0], canvas)];
-        file(canvas.size, &panels, "title χ").expect("a file")
+        file(canvas.size, 1.0, &panels, "title χ").expect("a file")
     }
 
     /// Returns the streams of a file that are text: the content of the page, and the maps of letters.
@@ -427,7 +429,7 @@ mod tests {
         canvas.circle([30.0, 20.0], 4.0, "#000000");
         canvas.dots([[8.0, 9.0]].into_iter(), 2.0, "#000000");
         let panels = [([10.0, 20.0], &canvas)];
-        let pdf = file([50.0, 60.0], &panels, "").expect("a file");
+        let pdf = file([50.0, 60.0], 1.0, &panels, "").expect("a file");
         let content = streams(&pdf).concat();
         for part in [
             "1 0 0 -1 0 60 cm\n",
@@ -449,7 +451,7 @@ mod tests {
     fn missing_letters_are_named_once_and_sorted() {
         let error = |text| {
             let canvas = canvas(text, Style::new(12));
-            file(canvas.size, &[([0.0, 0.0], &canvas)], "").expect_err("missing letters")
+            file(canvas.size, 1.0, &[([0.0, 0.0], &canvas)], "").expect_err("missing letters")
         };
         let letters = vec!['中', '文', '🦀'];
         assert_eq!(error("文🦀 a 中文"), PdfError::MissingLetters { letters });

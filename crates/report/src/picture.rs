@@ -1,17 +1,45 @@
 //! The picture of a figure: one or more panels, which the page places side by side and a file
 //! contains as a grid.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Shape};
 use crate::colours::dark_rules;
 use crate::svg::Words;
 use crate::{PdfError, pdf, svg};
 
 /// Space between panels in a file, in pixels.
 const GAP: f64 = 12.0;
+
+/// The smallest height of letters on paper, in points.
+const SMALLEST: f64 = 7.0;
+/// The largest height of a sheet in points: a page of A4 with its caption.
+const TALLEST: f64 = 680.0;
+
+/// A part of a picture: a file for paper.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sheet {
+    /// The panels of the sheet.
+    panels: Range<usize>,
+    /// Panels in each row.
+    columns: usize,
+    /// Width and height in pixels.
+    size: [f64; 2],
+    /// Points for each pixel.
+    scale: f64,
+    /// Whether the sheet was made for a width.
+    is_fitted: bool,
+}
+
+impl Sheet {
+    /// Returns the width and the height in points.
+    pub(crate) fn points(&self) -> [f64; 2] {
+        self.size.map(|length| length * self.scale)
+    }
+}
 
 /// The picture of a figure. A clone shares its panels.
 #[derive(Clone, Debug)]
@@ -45,22 +73,57 @@ impl Picture {
             "<style>svg{{max-width:100%;height:auto}}@media (prefers-color-scheme:dark){{{}}}</style>",
             dark_rules()
         );
-        svg::element(
-            self.size(),
-            &self.placed(),
-            Some(self.words(description)),
-            &style,
-        )
+        let sheet = self.whole();
+        let words = Some(self.words(description));
+        svg::element(sheet.size, None, &self.placed(&sheet), words, &style)
     }
 
-    /// Returns the picture as an SVG file in the colours of the light mode, for paper.
-    pub(crate) fn light_svg(&self, description: &str) -> String {
-        svg::element(
-            self.size(),
-            &self.placed(),
-            Some(self.words(description)),
-            "",
-        )
+    /// Returns a sheet as an SVG file in the colours of the light mode, for paper.
+    pub(crate) fn light_svg(&self, sheet: &Sheet, description: &str) -> String {
+        let words = Some(self.words(description));
+        let scale = sheet.is_fitted.then_some(sheet.scale);
+        svg::element(sheet.size, scale, &self.placed(sheet), words, "")
+    }
+
+    /// Returns the picture as one sheet, on which a pixel is a point.
+    pub(crate) fn whole(&self) -> Sheet {
+        self.sheet(0..self.panels.len(), self.columns, None)
+    }
+
+    /// Divides the picture into sheets of `width` points, with as many panels side by side as can be read, and at most
+    /// [`TALLEST`] points high. A sheet whose letters would be smaller than [`SMALLEST`] points is wider.
+    pub(crate) fn sheets(&self, width: f64) -> Vec<Sheet> {
+        let least = self.smallest_text().max(1.0);
+        let [across, down] = [0, 1].map(|axis| self.largest(axis) + GAP);
+        let most = width * least / SMALLEST;
+        let columns = ((most + GAP) / across).floor().max(1.0) as usize;
+        let columns = columns.min(self.panels.len()).max(1);
+        let layout = columns as f64 * across - GAP;
+        let scale = (width / layout).max(SMALLEST / least).min(1.0);
+        let rows = ((TALLEST / scale + GAP) / down).floor().max(1.0) as usize;
+        let starts = (0..self.panels.len()).step_by((rows * columns).max(1));
+        let sheet = |start: usize| {
+            let end = self.panels.len().min(start + rows * columns);
+            self.sheet(start..end, columns, Some(scale))
+        };
+        starts.map(sheet).collect()
+    }
+
+    fn sheet(&self, panels: Range<usize>, columns: usize, scale: Option<f64>) -> Sheet {
+        let counts = [columns, panels.len().div_ceil(columns)];
+        Sheet {
+            size: [0, 1].map(|axis| counts[axis] as f64 * (self.largest(axis) + GAP) - GAP),
+            panels,
+            columns,
+            scale: scale.unwrap_or(1.0),
+            is_fitted: scale.is_some(),
+        }
+    }
+
+    /// Returns the height of the smallest letters.
+    fn smallest_text(&self) -> f64 {
+        let sizes = self.panels.iter().map(|panel| smallest_text(&panel.shapes));
+        sizes.fold(f64::INFINITY, f64::min)
     }
 
     fn words<'w>(&'w self, description: &'w str) -> Words<'w> {
@@ -70,14 +133,14 @@ impl Picture {
         }
     }
 
-    /// Returns the picture as a PDF file of one page, in the colours of the light mode. One pixel is one
-    /// point. The text is text, in a font that the file contains.
+    /// Returns a sheet as a PDF file of one page, in the colours of the light mode. The text is text, in a font that the file
+    /// contains.
     ///
     /// # Errors
     ///
     /// Returns an error if the font does not have all letters of the picture.
-    pub fn pdf(&self) -> Result<Vec<u8>, PdfError> {
-        pdf::file(self.size(), &self.placed(), &self.label)
+    pub(crate) fn pdf(&self, sheet: &Sheet) -> Result<Vec<u8>, PdfError> {
+        pdf::file(sheet.size, sheet.scale, &self.placed(sheet), &self.label)
     }
 
     pub(crate) fn panel_count(&self) -> usize {
@@ -95,7 +158,7 @@ impl Picture {
         html! {
             @for (number, panel) in self.panels.iter().enumerate() {
                 @let words = (number == 0).then(|| self.words(description));
-                (PreEscaped(svg::element(panel.size, &[([0.0, 0.0], panel)], words, "")))
+                (PreEscaped(svg::element(panel.size, None, &[([0.0, 0.0], panel)], words, "")))
             }
         }
     }
@@ -106,20 +169,68 @@ impl Picture {
         sizes.fold(0.0, f64::max)
     }
 
-    /// Returns the width and the height of the grid.
-    fn size(&self) -> [f64; 2] {
-        let counts = [self.columns, self.panels.len().div_ceil(self.columns)];
-        [0, 1].map(|axis| counts[axis] as f64 * (self.largest(axis) + GAP) - GAP)
-    }
-
-    /// Returns the panels with their places in the grid.
-    fn placed(&self) -> Vec<([f64; 2], &Canvas)> {
+    /// Returns the panels of a sheet with their places.
+    fn placed(&self, sheet: &Sheet) -> Vec<([f64; 2], &Canvas)> {
         let cell = [0, 1].map(|axis| self.largest(axis) + GAP);
-        let panels = self.panels.iter().enumerate();
+        let panels = self.panels[sheet.panels.clone()].iter().enumerate();
         let placed = panels.map(|(number, panel)| {
-            let (column, row) = (number % self.columns, number / self.columns);
+            let (column, row) = (number % sheet.columns, number / sheet.columns);
             ([column as f64 * cell[0], row as f64 * cell[1]], panel)
         });
         placed.collect()
+    }
+}
+
+/// Returns the height of the smallest letters of `shapes`.
+fn smallest_text(shapes: &[Shape]) -> f64 {
+    let sizes = shapes.iter().map(|shape| match shape {
+        Shape::Text { style, .. } => f64::from(style.size),
+        Shape::Mark { shapes, .. } => smallest_text(shapes),
+        _ => f64::INFINITY,
+    });
+    sizes.fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::Style;
+
+    /// Returns a picture of `count` panels of the given size with letters of 12 pixels.
+    fn picture(count: usize, size: [f64; 2]) -> Picture {
+        let mut panel = Canvas::new(size[0], size[1]);
+        panel.mark("mark".into(), |canvas| {
+            canvas.text([0.0, 12.0], "text", Style::new(12));
+        });
+        Picture::grid("panels", 2, vec![panel; count])
+    }
+
+    #[test]
+    fn letters_are_at_least_seven_points_high_on_paper() {
+        for (count, panel) in [(1, 400.0), (7, 352.0), (6, 440.0), (1, 900.0), (28, 120.0)] {
+            let picture = picture(count, [panel, 300.0]);
+            for width in [241.0, 504.0] {
+                let sheets = picture.sheets(width);
+                let shown: usize = sheets.iter().map(|sheet| sheet.panels.len()).sum();
+                assert_eq!(shown, count);
+                for sheet in &sheets {
+                    let [across, down] = sheet.points();
+                    assert!(12.0 * sheet.scale >= SMALLEST - 1e-9, "{sheet:?}");
+                    assert!(down <= TALLEST + 1e-9, "{sheet:?}");
+                    // Only one panel that cannot be read at this width is wider.
+                    assert!(across <= width + 1e-9 || sheet.columns == 1, "{sheet:?}");
+                    assert!(across <= width + 1e-9 || panel * SMALLEST / 12.0 > width);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_has_as_many_panels_side_by_side_as_can_be_read() {
+        // At 7/12 of their size, 352 pixels are 205 points, and two with their gap 418.
+        let picture = picture(6, [352.0, 300.0]);
+        assert_eq!(picture.sheets(504.0)[0].columns, 2);
+        assert_eq!(picture.sheets(241.0)[0].columns, 1);
+        assert_eq!(picture.sheets(3000.0)[0].scale, 1.0);
     }
 }

@@ -15,19 +15,22 @@ pub(crate) struct Words<'w> {
 }
 
 /// Returns an SVG element of the given size with `panels`, each moved to its place. `style` has the style
-/// rules of the element. Without words, screen readers skip the element.
+/// rules of the element. With a scale, a pixel of the picture is that many points of paper. Without words, screen readers skip the element.
 pub(crate) fn element(
     [width, height]: [f64; 2],
+    scale: Option<f64>,
     panels: &[([f64; 2], &Canvas)],
     words: Option<Words<'_>>,
     style: &str,
 ) -> String {
     let mut svg = String::new();
+    let [across, down] = [width, height].map(|length| Number(length * scale.unwrap_or(1.0)));
+    let unit = if scale.is_some() { "pt" } else { "" };
     let [width, height] = [width, height].map(Number);
     write(
         &mut svg,
         format_args!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}{unit}\" height=\"{down}{unit}\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"system-ui, sans-serif\" fill=\"{TEXT_COLOUR}\" "
         ),
     );
@@ -221,7 +224,7 @@ mod tests {
             title: "\"title\"",
             description: "<what>",
         };
-        let svg = element([92.0, 30.5], &panels, Some(words), "<style></style>");
+        let svg = element([92.0, 30.5], None, &panels, Some(words), "<style></style>");
         let shapes = "<g><title>&lt;&amp;&gt;</title>\
             <rect x=\"0.33\" y=\"0\" width=\"3\" height=\"4\" fill=\"#ff0080\"/>\
             <path d=\"M5 6L7 8.13\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.5\" stroke-dasharray=\"4 3\"/></g>\
@@ -235,7 +238,7 @@ mod tests {
             <title>&quot;title&quot;</title><desc>&lt;what&gt;</desc><style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
         let expected = format!("{head}{shapes}<g transform=\"translate(52 0)\">{shapes}</g></svg>");
         assert_eq!(svg, expected);
-        let hidden = element([1.0, 1.0], &[], None, "");
+        let hidden = element([1.0, 1.0], None, &[], None, "");
         assert!(hidden.contains(" aria-hidden=\"true\">"), "{hidden}");
     }
 }

@@ -428,9 +428,24 @@ pub(crate) struct Draw {
     /// Write each figure as SVG, PDF and CSV, and tables for a paper, to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) figures: Option<PathBuf>,
+    /// Width of the files of --figures, such as 85mm (a column) or 178mm (a page);
+    /// no letter is smaller than 7 points
+    #[arg(long, value_name = "WIDTH", requires = "figures", value_parser = millimetres)]
+    pub(crate) width: Option<f64>,
     /// Replace a report.html that is not a report of Sixfold
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// Reads a width on paper: `85mm` or `17.8cm`.
+fn millimetres(text: &str) -> Result<f64, String> {
+    let number = |unit: &str| text.strip_suffix(unit)?.trim().parse::<f64>().ok();
+    let mm = number("mm").or_else(|| Some(10.0 * number("cm")?));
+    match mm {
+        Some(mm) if (20.0..=1000.0).contains(&mm) => Ok(mm),
+        Some(_) => Err("a width is from 20mm to 1000mm".into()),
+        None => Err("a width has a unit: write 85mm or 17.8cm".into()),
+    }
 }
 
 impl Study {

@@ -126,7 +126,7 @@ impl<'a> Pages<'a> {
             drawn = drawn.and(written);
         }
         match &self.figures {
-            Some(folder) => drawn.and(paper::write(folder, page.figure_files())),
+            Some(folder) => drawn.and(paper::write(folder, page.figure_files(None))),
             None => drawn,
         }
     }

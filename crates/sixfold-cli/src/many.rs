@@ -121,7 +121,14 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     if let Some(paper) = &paper {
         match is_empty {
             true => paper.remove_if_empty(),
-            false => written = written.and(paper::write_if(Some(paper), &results, &command_line())),
+            false => {
+                written = written.and(paper::write_if(
+                    Some(paper),
+                    &results,
+                    &command_line(),
+                    None,
+                ))
+            }
         }
     }
     if interrupted && let Some(folder) = &arguments.report {

@@ -15,18 +15,22 @@ use crate::failure::Failure;
 use crate::listed_folder::ListedFolder;
 use crate::text::print_notice;
 
-/// Writes the files for a paper on `results` if `--figures` is given. A figure without a recorded
+/// Writes the files for a paper on `results` if `--figures` is given, `mm` wide. A figure without a recorded
 /// command shows `command`.
 pub(crate) fn write_if(
     folder: Option<&ListedFolder>,
     results: &Results,
     command: &str,
+    mm: Option<f64>,
 ) -> Result<(), Failure> {
     let Some(folder) = folder else {
         return Ok(());
     };
     let results = results.without_folders();
-    write(folder, ReportPage::new(&results, command).paper(&results))
+    write(
+        folder,
+        ReportPage::new(&results, command).paper(&results, mm),
+    )
 }
 
 /// Writes drawn figures, and prints a notice for each figure without a PDF file.
@@ -34,6 +38,12 @@ pub(crate) fn write(folder: &ListedFolder, paper: PaperFiles) -> Result<(), Fail
     folder.write(paper.files)?;
     for missing in paper.missing {
         print_notice(&format!("note: {missing}"));
+    }
+    for wider in paper.wider {
+        print_notice(&format!(
+            "note: {} is {:.0} mm wide: narrower, its letters would be smaller than 7 points",
+            wider.id, wider.mm
+        ));
     }
     Ok(())
 }

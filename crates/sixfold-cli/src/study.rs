@@ -104,7 +104,7 @@ fn run_single(
             print(&report, &mut session.text);
             let mut results = finding(report, arguments).into();
             let written = session.write(&mut results);
-            let written = written.and(paper::write_if(paper, &results, &command_line()));
+            let written = written.and(paper::write_if(paper, &results, &command_line(), None));
             let interrupted = results.is_interrupted();
             let keep_going = arguments.launching.keep_going;
             measured_code(written, &results, interrupted, keep_going)

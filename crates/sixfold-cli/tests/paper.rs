@@ -69,6 +69,20 @@ fn a_study_writes_the_files_for_a_paper() {
         assert_eq!(text(&sixfold, &format!("{folder}/heat-map.csv")), csv);
     }
     assert!(!exists(&sixfold, "again/report.html"));
+    let narrow = ["report", "page", "--figures", "narrow", "--width", "85mm"];
+    let run = run_ok(&sixfold, &narrow);
+    // Six columns of numbers are not read in 85 mm, a ranking is.
+    assert!(
+        run.stderr.contains("note: heat-map is 163 mm wide"),
+        "{run:?}"
+    );
+    let ranking = text(&sixfold, "narrow/rankings.svg");
+    assert!(
+        ranking.contains(" width=\"240.94pt\""),
+        "{}",
+        &ranking[..200]
+    );
+    assert!(!ranking.contains("prefers-color-scheme"));
 }
 
 #[test]

@@ -543,7 +543,7 @@ fn a_figure_with_letters_that_its_font_lacks_has_no_pdf() {
     let mut row = change("build", "half-edge", 2.0);
     row.measurement.mesh = "文🦀中χ文.obj".into();
     let page = page(&changes(vec![row, change("build", "half-edge", 3.0)]));
-    let paper = page.figure_files();
+    let paper = page.figure_files(None);
     let [missing] = &paper.missing[..] else {
         panic!("{:?}", paper.missing);
     };

@@ -39,7 +39,7 @@ fn results(meshes: &[&str]) -> Results {
 
 fn paper(results: &Results) -> Vec<PaperFile> {
     let page = ReportPage::new(results, "sixfold study");
-    let paper = page.paper(results);
+    let paper = page.paper(results, None);
     assert_eq!(paper.missing, []);
     paper.files
 }

@@ -16,6 +16,6 @@ pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     if let Some(to) = &arguments.to {
         Folder::create(to, arguments.force)?.write_page(&results, &command_line())?;
     }
-    paper::write_if(paper.as_ref(), &results, &command_line())?;
+    paper::write_if(paper.as_ref(), &results, &command_line(), arguments.width)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -39,7 +39,12 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         written = written
             .and(Folder::create(path, arguments.force)?.write_report(&merged, &command_line()));
     }
-    let written = written.and(paper::write_if(paper.as_ref(), &merged, &command_line()));
+    let written = written.and(paper::write_if(
+        paper.as_ref(),
+        &merged,
+        &command_line(),
+        None,
+    ));
     exit_code(written, &merged, false)
 }
 
