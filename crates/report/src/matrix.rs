@@ -227,22 +227,29 @@ impl Cell {
             0 => Source::Measured,
             _ => Source::Bound,
         };
-        let standing = match row.ratio_to_best {
-            _ if row.estimated > 0 => None,
-            _ if row.best == row.meshes => Some(Standing::Best),
-            _ => None,
-        };
         Self {
             ratio: Some(row.ratio_to_best),
             interval: row.ci_low.zip(row.ci_high).map(|(low, high)| [low, high]),
             ns: row.ns_per_element,
-            standing,
             remark: Some(format!(
                 "mean over {} meshes: single fastest on {}, shared first place on {}, not run on {}",
                 row.meshes, row.best, row.tied, row.estimated
             )),
             ..Self::new(&row.backend, source)
         }
+    }
+}
+
+/// An interval whose ends differ by more than this factor says that nothing is known.
+const WIDEST: f64 = 1000.0;
+
+fn known(quotient: Quotient) -> Quotient {
+    let interval = quotient
+        .interval
+        .filter(|[low, high]| *high <= WIDEST * low);
+    Quotient {
+        interval,
+        ..quotient
     }
 }
 
@@ -289,6 +296,7 @@ impl Matrix {
                 quotients: backends
                     .iter()
                     .map(|other| study.quotient(operation, name, other))
+                    .map(|quotient| quotient.map(known))
                     .collect(),
                 ..Cell::of_study(study, operation, name)
             });
@@ -328,7 +336,8 @@ impl Matrix {
                 },
                 None => Cell::new(name, Source::NotRun),
             };
-            let cells = backends.iter().zip(quotients).map(cell).collect();
+            let mut cells: Vec<Cell> = backends.iter().zip(quotients).map(cell).collect();
+            set_standings(&mut cells);
             Some(Line::new(info, info.unit.clone(), cells))
         });
         Self {
@@ -338,6 +347,33 @@ impl Matrix {
                 .first()
                 .map_or_else(Confidence::default, |study| study.run.settings.confidence),
         }
+    }
+}
+
+/// Sets which means are the smallest: one alone if the intervals of its quotients with the others exclude 1, otherwise all
+/// whose interval contains 1. Without intervals, nothing is set.
+fn set_standings(cells: &mut [Cell]) {
+    let ratio = |cell: &Cell| cell.ratio.filter(|_| !cell.is_bound());
+    let measured = (0..cells.len()).filter_map(|place| Some((place, ratio(&cells[place])?)));
+    let least = measured.min_by(|a, b| a.1.total_cmp(&b.1));
+    let Some((first, _)) = least else { return };
+    let interval = |cell: &Cell| cell.quotients.get(first)?.as_ref()?.interval;
+    let others = (0..cells.len()).filter(|&place| place != first && ratio(&cells[place]).is_some());
+    let others: Vec<(usize, Option<[f64; 2]>)> = others
+        .map(|place| (place, interval(&cells[place])))
+        .collect();
+    if others.is_empty() || others.iter().any(|(_, ends)| ends.is_none()) {
+        return;
+    }
+    let is_open = |ends: &Option<[f64; 2]>| ends.is_some_and(|[low, _]| low <= 1.0);
+    let open = others.into_iter().filter(|(_, ends)| is_open(ends));
+    let open: Vec<usize> = open.map(|(place, _)| place).collect();
+    cells[first].standing = Some(match open.is_empty() {
+        true => Standing::Best,
+        false => Standing::Undecided,
+    });
+    for place in open {
+        cells[place].standing = Some(Standing::Undecided);
     }
 }
 

@@ -478,8 +478,15 @@ fn fastest(
             let row = &rows[best.len()];
             let interval = row.interval_to_first().map(|ends| ends.map(figure));
             let interval = interval.filter(|[low, high]| low != high);
-            let interval =
-                interval.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
+            // Over several meshes, the interval is that of other meshes like these.
+            let of_others = if row.meshes > 1 {
+                "on other such meshes "
+            } else {
+                ""
+            };
+            let interval = interval.map_or(String::new(), |[low, high]| {
+                format!(" ({of_others}{low} to {high})")
+            });
             format!("; {next} {ratio}{interval}")
         });
         Some(format!("{}{provisional}: {names}{next}.", purpose.title()))

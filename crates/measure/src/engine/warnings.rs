@@ -209,11 +209,17 @@ fn wide(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
         return None;
     }
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let widest = match *worst < 10.0 {
+        true => format!("{:.0} %", 100.0 * worst),
+        false => format!(
+            "to {} times its time",
+            sixfold_results::numbers::figure(1.0 + worst)
+        ),
+    };
     Some(format!(
         "{count} of {all} intervals extend more than {:.0} % from their time. The widest \
-         interval extends {:.0} % ({} on {}). Use {} or a quieter machine.",
+         interval extends {widest} ({} on {}). Use {} or a quieter machine.",
         100.0 * WIDE,
-        100.0 * worst,
         row.operation,
         row.backend,
         settings.more_samples()

@@ -124,7 +124,7 @@ fn which_meshes(pooled: usize, studied: usize) -> String {
         ),
         false => format!(
             "Which meshes: the means are over the {} of {} that all compared structures can hold; the others have rows of their own \
-             in the next table.",
+             in the table “Fastest by size and kind of mesh”.",
             grouped(pooled),
             grouped(studied)
         ),

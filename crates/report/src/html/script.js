@@ -102,7 +102,7 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
         const {cell, ns, low, high, bound} = entry;
         entry.shown = ns;
         if (ns === null) continue;
-        const sign = bound ? '≥ ' : '';
+        const sign = bound ? '≥ ' : cell.dataset.source === 'sampled' ? '~ ' : '';
         const round = bound ? Math.floor : Math.round;
         if (figures.value === 'times') {
           const ends = low === null ? '' : `${duration(low)} to ${duration(high)}`;
@@ -118,7 +118,8 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
           entry.shown = null;
         } else {
           // A lower bound has no ratio of its own.
-          const [ratio = ns / base.ns, from, to] = entry.quotients[column] ?? [];
+          const both = entry.ratio !== null && base.ratio !== null;
+          const [ratio = both ? entry.ratio / base.ratio : ns / base.ns, from, to] = entry.quotients[column] ?? [];
           entry.shown = ratio;
           const ends = entry === base || from === undefined ? '' : `${digits(from)} to ${digits(to)}`;
           cell.innerHTML = cellHtml(`${sign}${digits(ratio, round)} ×`, ends);

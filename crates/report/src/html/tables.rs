@@ -17,7 +17,7 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
                 caption {
                     span {
                         "Times are divided by the shortest of the column. A dot is a ratio on a logarithmic scale from 1 to 10, the line \
-                         is its interval; an arrow is beyond. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
+                         is its interval (of a mean over meshes: that of other meshes like these); an arrow is beyond. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
                          or undecided · ≥: lower bound, not ranked. Memory: the bytes of all tables divided by the vertices, and by the triangles \
                          (or faces); multiply by the number of yours. Its bars begin at 0."
                     }
@@ -56,7 +56,7 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
         Drawing::Dot { ratio, interval } => {
             let class = match (figure.rank, ratio > END) {
                 (_, true) => "dot over",
-                (Rank::Bound, _) => "dot bound",
+                (Rank::Bound, false) => "dot bound",
                 _ => "dot",
             };
             (class, dot_places(ratio, interval))
@@ -180,8 +180,8 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     let title: Vec<String> = title.into_iter().filter(|part| !part.is_empty()).collect();
     let places = cell.ratio.map(|ratio| dot_places(ratio, cell.interval));
     let class = match cell.ratio > Some(END) {
-        true => "dot over",
-        false => class,
+        true => format!("{class} over"),
+        false => class.to_owned(),
     };
     let quotients = (!cell.quotients.is_empty()).then(|| quotients(cell));
     let [low, high] = match cell.ns_interval {

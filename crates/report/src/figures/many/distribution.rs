@@ -210,6 +210,14 @@ fn draw_line(canvas: &mut Canvas, line: &Line<'_>, scale: LogScale, y: f64) {
     canvas.text([DOTS[1] + 12.0, y + 4.0], &text, label);
 }
 
+/// Returns the ratio of a mesh as text, with the sign of a lower bound.
+fn ratio_text(dot: &Dot<'_>) -> String {
+    match dot.bound {
+        true => format!("≥ {}", times(rounded_down(dot.ratio))),
+        false => times(dot.ratio),
+    }
+}
+
 fn draw_dot(
     canvas: &mut Canvas,
     dot: &Dot<'_>,
@@ -218,10 +226,7 @@ fn draw_dot(
     scale: LogScale,
     colour: &'static str,
 ) {
-    let ratio = match dot.bound {
-        true => format!("≥ {}", times(rounded_down(dot.ratio))),
-        false => times(dot.ratio),
-    };
+    let ratio = ratio_text(dot);
     canvas.mark(format!("{}, {backend}: {ratio}", dot.mesh), |canvas| {
         if dot.ratio > 1.001 * scale.values[1] {
             canvas.filled(
@@ -254,9 +259,10 @@ fn table(panels: &[Panel<'_>]) -> Table {
     for panel in panels {
         for line in &panel.lines {
             let mean = line.mean;
-            let end = |pick: fn(f64, f64) -> f64| {
-                let ratios = line.dots.iter().map(|dot| dot.ratio);
-                ratios.reduce(pick).map_or_else(|| "–".into(), times)
+            let end = |sign: f64| {
+                let dots = line.dots.iter();
+                let end = dots.min_by(|a, b| (sign * a.ratio).total_cmp(&(sign * b.ratio)));
+                end.map_or_else(|| "–".into(), ratio_text)
             };
             table.row(vec![
                 panel.purpose.title().to_lowercase(),
@@ -266,8 +272,8 @@ fn table(panels: &[Panel<'_>]) -> Table {
                 grouped(mean.best),
                 grouped(mean.tied),
                 grouped(mean.meshes - mean.undecided),
-                end(f64::min),
-                end(f64::max),
+                end(1.0),
+                end(-1.0),
                 grouped(line.dots.len()),
             ]);
         }
