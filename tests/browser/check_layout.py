@@ -23,7 +23,7 @@ PAPER_WIDTHS = {"portrait": 718, "landscape": 1047}
 # The least sizes of letters: 11 pixels on a screen, 7 points on paper.
 LEAST_SIZE = {"screen": 11, "print": 7 / 0.75}
 LEAST_CONTRAST = 4.5
-# A printed page with fewer words is almost empty, unless it is the last, or has a figure.
+# A printed sheet with fewer words is almost empty, unless it is the last. The texts of figures count.
 FEWEST_WORDS = 25
 
 FAULTS = """
@@ -122,8 +122,8 @@ return [...new Set(faults)];
 """
 
 
-def pages_of(browser, page):
-    """Prints the page; returns the number of words and of shapes of each sheet."""
+def words_of_sheets(browser):
+    """Prints the open page; returns the number of words of each sheet."""
     printed = browser.devtools("Page.printToPDF", preferCSSPageSize=True)
     with tempfile.NamedTemporaryFile(suffix=".pdf") as file:
         file.write(base64.b64decode(printed["data"]))
@@ -138,7 +138,7 @@ def check(browser, page):
     browser.devtools("Emulation.setEmulatedMedia", media="screen")
     browser.open(page)
     paper = PAPER_WIDTHS[browser.run("return document.body.dataset.paper ?? 'portrait'")]
-    words = pages_of(browser, page)
+    words = words_of_sheets(browser)
     found += [(f"{page.name}, sheet {sheet + 1} of {len(words)}", f"only {count} words")
               for sheet, count in enumerate(words[:-1]) if count < FEWEST_WORDS]
     for media, width, theme in [*[("screen", width, theme) for width in WIDTHS for theme in ("light", "dark")],

@@ -134,7 +134,7 @@ pub(crate) fn dark_rules() -> String {
 
 /// Returns the contrast of two colours, from 1 to 21, as the guidelines for accessible pages (WCAG 2.2, 2023) define it.
 #[cfg(test)]
-fn contrast(a: &str, b: &str) -> f64 {
+pub(crate) fn contrast(a: &str, b: &str) -> f64 {
     let luminance = |colour: &str| {
         let part = |from: usize| {
             let value = u8::from_str_radix(&colour[from..from + 2], 16).expect("two digits");

@@ -66,7 +66,7 @@ pub struct ReportPage {
     pub conditions: Vec<String>,
     /// The structures by kind of work; `None` without a study.
     pub summary: Option<Summary>,
-    /// The name of the file beside the page that has all results as JSON; `None` if there is none.
+    /// The file with all results as JSON, in the folder of the page; `None` if there is no such file.
     pub data: Option<String>,
     /// The command that reproduces the report.
     pub command: String,

@@ -186,3 +186,21 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, cell: &Cell, ope
         },
     );
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colours::contrast;
+
+    #[test]
+    fn numbers_are_read_on_every_colour() {
+        for (place, colour) in VIRIDIS.into_iter().enumerate() {
+            let ink = if place < FIRST_LIGHT {
+                ON_DARK
+            } else {
+                ON_LIGHT
+            };
+            assert!(contrast(ink, colour) >= 4.5, "{ink} on {colour}");
+        }
+    }
+}

@@ -299,8 +299,8 @@ fn means(pool: &Pool, confidence: Confidence) -> PaperTable {
         caption: format!(
             "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh, with \
              {confidence} intervals in brackets. Each power of ten of the number of faces has the same weight. Bold: the \
-             smallest mean, if it is the fastest on every mesh. Italic: a mean that is as small as the smallest on some \
-             meshes. ≥: lower bound, because a run on a mesh would exceed the budget. –: not measured.",
+             smallest mean, if it is the fastest on every mesh. Italic: the smallest mean otherwise, and means of backends \
+             that are fastest or share the first place on some meshes. ≥: lower bound, because a run on a mesh would exceed the budget. –: not measured.",
             counted(meshes, "mesh", "meshes")
         ),
         rows: with_cells(
