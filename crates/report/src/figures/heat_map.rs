@@ -18,7 +18,7 @@ const COLUMN: f64 = 104.0;
 const HEAD: f64 = 26.0;
 /// With more columns, they are narrower, and their names have two lines.
 const MOST_WIDE_COLUMNS: usize = 6;
-const NARROW_COLUMN: f64 = 92.0;
+const NARROW_COLUMN: f64 = 80.0;
 const LINE: f64 = 14.0;
 const ROW: f64 = 21.0;
 /// The text on dark cells and on light cells, in both modes of the page.
