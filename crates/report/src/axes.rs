@@ -3,6 +3,14 @@
 use crate::canvas::{Canvas, PointShape, Style, text_width};
 use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
 
+/// Size of a panel with two axes, and their places: three panels fit beside each other on the page, and the names of
+/// curves are at their right.
+pub(crate) const SIZE: [f64; 2] = [368.0, 270.0];
+pub(crate) const ACROSS: [f64; 2] = [66.0, 212.0];
+pub(crate) const UPWARDS: [f64; 2] = [228.0, 44.0];
+/// Columns of a picture of such panels.
+pub(crate) const COLUMNS: usize = 3;
+
 /// A logarithmic scale from values to pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LogScale {
@@ -38,6 +46,29 @@ impl LogScale {
         let ticks = powers.flat_map(|power| factors.iter().map(move |f| f * 10_f64.powi(power)));
         let inside = |tick: &f64| (low * 0.999..=high * 1.001).contains(tick);
         ticks.filter(inside).collect()
+    }
+
+    /// Draws an upright line from `top` to `bottom` at each tick of a horizontal scale, and its label with the base line
+    /// `labels`. From the right, labels without room are left out.
+    pub(crate) fn draw_ticks(
+        &self,
+        canvas: &mut Canvas,
+        [top, bottom]: [f64; 2],
+        labels: f64,
+        colour: &'static str,
+        format: &dyn Fn(f64) -> String,
+    ) {
+        let mut free_until = f64::INFINITY;
+        for tick in self.ticks().into_iter().rev() {
+            let x = self.place(tick);
+            canvas.line([x, top], [x, bottom], GRID_COLOUR, 1.0);
+            let label = format(tick);
+            let half = text_width(&label, 12) / 2.0;
+            if x + half < free_until {
+                canvas.text([x, labels], &label, Style::new(12).middle().colour(colour));
+                free_until = x - half - 8.0;
+            }
+        }
     }
 }
 
@@ -78,17 +109,9 @@ impl Axes<'_> {
     pub(crate) fn draw(&self, canvas: &mut Canvas) {
         let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
         let small = Style::new(12);
-        let mut free_from = f64::NEG_INFINITY;
-        for tick in self.x.ticks() {
-            let x = self.x.place(tick);
-            canvas.line([x, top], [x, bottom], GRID_COLOUR, 1.0);
-            let label = (self.x_format)(tick);
-            let half = text_width(&label, 12) / 2.0;
-            if x - half > free_from {
-                canvas.text([x, bottom + 16.0], &label, small.middle());
-                free_from = x + half + 4.0;
-            }
-        }
+        let labels = bottom + 16.0;
+        let x = &self.x;
+        x.draw_ticks(canvas, [top, bottom], labels, TEXT_COLOUR, self.x_format);
         for tick in self.y.ticks() {
             let y = self.y.place(tick);
             canvas.line([left, y], [right, y], GRID_COLOUR, 1.0);
@@ -131,8 +154,8 @@ impl Axes<'_> {
         let heights: Vec<f64> = names.iter().map(|(_, height, ..)| *height).collect();
         let labels = spread(&heights, 15.0, [top, bottom]);
         for ((name, _, colour, shape), &label) in names.iter().zip(&labels) {
-            canvas.point(*shape, [right + 12.0, label], 3.5, colour);
-            canvas.text([right + 20.0, label + 4.0], name, Style::new(12));
+            canvas.point(*shape, [right + 10.0, label], 3.5, colour);
+            canvas.text([right + 18.0, label + 4.0], name, Style::new(12));
         }
         names.len()
     }

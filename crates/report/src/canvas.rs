@@ -39,8 +39,11 @@ pub(crate) enum Shape {
         radius: f64,
         paint: Paint,
     },
-    /// Straight lines from point to point. The outline is closed if it is filled.
-    Path { points: Vec<[f64; 2]>, paint: Paint },
+    /// Parts of straight lines from point to point. A part is closed if it is filled.
+    Path {
+        parts: Vec<Vec<[f64; 2]>>,
+        paint: Paint,
+    },
     /// Squares of one size and colour, from their upper left corners.
     Squares {
         corners: Vec<[f64; 2]>,
@@ -224,6 +227,18 @@ impl Canvas {
         self.path(points, solid(stroke, width));
     }
 
+    /// Draws lines that are one shape.
+    pub(crate) fn lines(
+        &mut self,
+        lines: impl Iterator<Item = [[f64; 2]; 2]>,
+        stroke: &'static str,
+        width: f64,
+    ) {
+        let parts = lines.map(|line| line.to_vec()).collect();
+        let paint = solid(stroke, width);
+        self.shapes.push(Shape::Path { parts, paint });
+    }
+
     /// Draws a closed outline.
     pub(crate) fn filled(&mut self, points: &[[f64; 2]], fill: &'static str) {
         self.path(points, Paint::Fill(fill));
@@ -231,8 +246,8 @@ impl Canvas {
 
     fn path(&mut self, points: &[[f64; 2]], paint: Paint) {
         if !points.is_empty() {
-            let points = points.to_vec();
-            self.shapes.push(Shape::Path { points, paint });
+            let parts = vec![points.to_vec()];
+            self.shapes.push(Shape::Path { parts, paint });
         }
     }
 

@@ -163,7 +163,12 @@ impl ReportPage {
                     p { "All results, with every sample: " a href=(data) { (data) } }
                 }
                 @for machine in &self.machines { p { (machine) } }
-                @for paragraph in &self.methods { p { (paragraph) } }
+                @if !self.methods.is_empty() {
+                    details {
+                        summary { "In words, as for a paper" }
+                        @for paragraph in &self.methods { p { (paragraph) } }
+                    }
+                }
             }
         }
     }
@@ -277,7 +282,7 @@ fn folded_figure(figure: &Figure) -> Markup {
             (heading("h2", &figure.title, &figure.id))
             details.folded {
                 summary { "Show the figure: the numbers of the table of all operations, each operation in a panel" }
-                (figure_with_numbers(figure, None))
+                (figure_and_caption(figure, None))
             }
         }
     }
@@ -285,26 +290,32 @@ fn folded_figure(figure: &Figure) -> Markup {
 
 /// Returns a figure, its numbers and its command. `mesh` is the name of the mesh if the page has several meshes.
 fn figure_with_numbers(figure: &Figure, mesh: Option<&str>) -> Markup {
+    html! {
+        (figure_and_caption(figure, mesh))
+        details {
+            summary { "Numbers, measurement and command" }
+            @if !figure.source.is_empty() { p.faint { (figure.source) } }
+            (plain_table(&figure.table, &format!("The numbers of the figure “{}”.", figure.title)))
+            pre { code { (figure.command) } }
+        }
+    }
+}
+
+fn figure_and_caption(figure: &Figure, mesh: Option<&str>) -> Markup {
     let class = match figure.picture.panel_count() {
         1 => "scroll wide",
         _ => "scroll wide panels",
     };
     let name = format!("Figure: {}", figure.title);
     html! {
-            figure data-figure=(figure.id) data-mesh=[mesh] {
-                div class=(class) tabindex="0" role="region" aria-label=(name) style={ "--panel:" (figure.picture.width()) "px" } {
-                    (figure.picture.markup(&figure.caption))
-                }
-                figcaption {
-                    (prose(&figure.caption))
-                    div.source { (figure.source) }
-                }
+        figure data-figure=(figure.id) data-mesh=[mesh] {
+            div class=(class) tabindex="0" role="region" aria-label=(name) style={ "--panel:" (figure.picture.width()) "px" } {
+                (figure.picture.markup(&figure.caption))
             }
-            details {
-                summary { "Numbers and command" }
-                (plain_table(&figure.table, &format!("The numbers of the figure “{}”.", figure.title)))
-                pre { code { (figure.command) } }
+            figcaption {
+                (prose(&figure.caption))
             }
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_results::{
     Confidence, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Overall, Pool, Pooled, Purpose,
-    Quotient, RefusalKind, Report, ResultRow, Standing, mean_quotients, operations,
+    Quotient, RefusalKind, Report, ResultRow, Samples, Standing, mean_quotients, operations,
 };
 
 use crate::figure::Table;
@@ -189,7 +189,8 @@ impl Cell {
             interval: (row.ratio_ci_low.zip(row.ratio_ci_high))
                 .filter(|_| row.samples >= FEWEST_FOR_INTERVAL)
                 .filter(|_| ratio.is_some_and(|ratio| ratio != 1.0))
-                .map(|(low, high)| [low, high]),
+                .map(Into::into)
+                .filter(is_known),
             ns: row.ns_per_element,
             ns_interval: ends.and_then(|(low, high)| Some([each(low)?, each(high)?])),
             first_ns: first_time(row),
@@ -243,32 +244,45 @@ impl Cell {
 /// An interval whose ends differ by more than this factor says that nothing is known.
 const WIDEST: f64 = 1000.0;
 
+fn is_known([low, high]: &[f64; 2]) -> bool {
+    *high <= WIDEST * low
+}
+
 fn known(quotient: Quotient) -> Quotient {
-    let interval = quotient
-        .interval
-        .filter(|[low, high]| *high <= WIDEST * low);
     Quotient {
-        interval,
+        interval: quotient.interval.filter(is_known),
         ..quotient
     }
 }
 
-/// Returns the times per element of the samples of a row by launch, also of those that other programs disturbed.
+/// Returns the times per element of the samples of a row by launch, also of those that other programs disturbed. A launch
+/// that had only time for the first run has the time of this run.
 fn launches(study: &Report, row: &ResultRow) -> Vec<Vec<f64>> {
+    let Some(elements) = row.elements.filter(|&n| n > 0) else {
+        return Vec::new();
+    };
     let mut samples = study.samples.iter();
     let samples = samples.find(|samples| {
         !samples.control && samples.operation == row.operation && samples.backend == row.backend
     });
-    let Some((samples, elements)) = samples.zip(row.elements.filter(|&n| n > 0)) else {
-        return Vec::new();
+    let times = samples.map(|samples| samples.cpu_ns.as_ref().unwrap_or(&samples.wall_ns));
+    let launch_of = |samples: &Samples, place| samples.launches.get(place).copied().unwrap_or(0);
+    let of_launch = |launch: usize| {
+        let all = samples.zip(times).into_iter().flat_map(|(samples, times)| {
+            let times = times.iter().enumerate();
+            times.filter(move |(place, _)| launch_of(samples, *place) as usize == launch)
+        });
+        let all: Vec<f64> = all.map(|(_, ns)| *ns).collect();
+        match (all.is_empty(), row.launch_ns.get(launch)) {
+            (true, Some(ns)) => ns.iter().copied().collect(),
+            _ => all,
+        }
     };
-    let times = samples.cpu_ns.as_ref().unwrap_or(&samples.wall_ns);
-    let launch_of = |sample: usize| samples.launches.get(sample).copied().unwrap_or(0);
-    let places: Vec<usize> = (0..times.len()).collect();
-    let launches = places.chunk_by(|&a, &b| launch_of(a) == launch_of(b));
-    let each = |&sample: &usize| times[sample] / elements as f64;
+    let launches = (0..row.launch_ns.len().max(1)).map(of_launch);
+    let each = |ns: f64| ns / elements as f64;
+    let launches = launches.map(|launch| launch.into_iter().map(each).collect());
     launches
-        .map(|launch| launch.iter().map(each).collect())
+        .filter(|launch: &Vec<f64>| !launch.is_empty())
         .collect()
 }
 
@@ -334,7 +348,7 @@ impl Matrix {
                     quotients,
                     ..Cell::of_pool(row)
                 },
-                None => Cell::new(name, Source::NotRun),
+                None => Cell::new(name, without_time(studies, operation, name)),
             };
             let mut cells: Vec<Cell> = backends.iter().zip(quotients).map(cell).collect();
             set_standings(&mut cells);
@@ -347,6 +361,19 @@ impl Matrix {
                 .first()
                 .map_or_else(Confidence::default, |study| study.run.settings.confidence),
         }
+    }
+}
+
+/// Returns why a backend has no time of an operation on any mesh.
+fn without_time(studies: &[&Report], operation: &str, backend: &str) -> Source {
+    let refusals = studies.iter().flat_map(|study| &study.refusals);
+    let own = refusals.filter(|r| r.operation == operation && r.backend == backend);
+    let kinds: Vec<RefusalKind> = own.map(|refusal| refusal.kind).collect();
+    match kinds.first() {
+        Some(RefusalKind::Impossible) if kinds.iter().all(|&kind| kind == kinds[0]) => {
+            Source::Impossible
+        }
+        _ => Source::NotRun,
     }
 }
 

@@ -1,15 +1,10 @@
 //! Several small line charts in one SVG figure.
 
 use crate::Picture;
-use crate::axes::{Axes, Curve, CurvePoint, LogScale};
+use crate::axes::{ACROSS, Axes, Curve, CurvePoint, LogScale, SIZE, UPWARDS};
 use crate::canvas::{Canvas, Style};
 use crate::colours::{column_colour, column_shape};
 use crate::figure::count_tick;
-
-/// Size of a panel, and the places of its axes.
-const SIZE: [f64; 2] = [440.0, 320.0];
-const ACROSS: [f64; 2] = [58.0, 310.0];
-const UPWARDS: [f64; 2] = [270.0, 50.0];
 
 /// One small line chart with logarithmic axes.
 #[derive(Clone, Debug, PartialEq)]

@@ -131,8 +131,8 @@ impl Page {
                     self.circle(centre.map(rounded), rounded(*radius));
                     self.paint(*paint);
                 }
-                Shape::Path { points, paint } => {
-                    for (number, point) in points.iter().enumerate() {
+                Shape::Path { parts, paint } => {
+                    for (number, point) in parts.iter().flat_map(|part| part.iter().enumerate()) {
                         let [x, y] = point.map(rounded);
                         match number {
                             0 => self.content.move_to(x, y),

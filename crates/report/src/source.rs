@@ -11,12 +11,15 @@ use crate::data::date;
 pub(crate) fn line(findings: &[&Finding]) -> String {
     let parts = [
         samples(findings),
-        one_or_count(findings, "budgets", |finding| {
+        one_or_count(findings, "durations", |finding| {
             let settings = &finding.run().settings;
             Some(match settings.rounds {
                 Some(_) => settings.effort_text(),
-                None if findings.len() > 1 => format!("budget {} each", settings.effort_text()),
-                None => format!("budget {}", settings.effort_text()),
+                // A part of the --budget, if the command measures more.
+                None if findings.len() > 1 => {
+                    format!("measured for {} each", settings.effort_text())
+                }
+                None => format!("measured for {}", settings.effort_text()),
             })
         }),
         dates(findings),

@@ -185,7 +185,8 @@ impl Summary {
             over: &|rows| match rows[0].purpose {
                 // The first build, on fresh pages, takes longer.
                 Purpose::Build => "repeated builds".into(),
-                _ => study.mean_over(rows).replace("geometric mean", "mean"),
+                Purpose::Query => work_of_mean(study, rows, "queries and passes"),
+                _ => work_of_mean(study, rows, "edits"),
             },
         };
         Self::new(&backends, &work, &memory, orders)
@@ -299,6 +300,12 @@ impl Summary {
     }
 }
 
+/// Returns what a mean is over, such as `mean of 17 queries and passes`.
+fn work_of_mean(study: &Report, rows: &[Overall], work: &str) -> String {
+    let text = study.mean_over(rows).replace("geometric mean", "mean");
+    text.replace("operations", work)
+}
+
 /// Returns the lab that reordered the mesh of `study`.
 fn orders_of<'r>(study: &Report, results: &'r Results) -> Option<&'r OrdersReport> {
     results
@@ -350,24 +357,41 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
     })
 }
 
-/// Returns the largest effect of the order on `backend`, as the quotient of two shown times, with its
-/// operation.
-fn order_effect<'r>(orders: &'r OrdersReport, backend: &str) -> Option<(f64, &'r str)> {
+/// The largest effect of the order on a backend.
+struct OrderEffect<'r> {
+    /// The longest time divided by the shortest, as the quotient of two shown times.
+    ratio: f64,
+    interval: Option<[f64; 2]>,
+    operation: &'r str,
+}
+
+fn order_effect<'r>(orders: &'r OrdersReport, backend: &str) -> Option<OrderEffect<'r>> {
     let effects = orders.comparisons.iter().filter_map(|comparison| {
         let rows = orders.rows(&comparison.operation);
         let rows = rows.filter(|row| row.backend == backend && row.ratio_to_best.is_some());
         let times: Vec<f64> = rows.filter_map(|row| row.ns_per_element).collect();
         let least = times.iter().copied().reduce(f64::min)?;
         let most = times.iter().copied().reduce(f64::max)?;
-        Some((shown_ratio(most, least), comparison.operation.as_str()))
+        let mut factors = comparison.orders.iter();
+        let factor = factors
+            .find(|effect| effect.backend == backend)?
+            .worst_to_best;
+        Some(OrderEffect {
+            ratio: shown_ratio(most, least),
+            interval: factor.ci_low.zip(factor.ci_high).map(Into::into),
+            operation: &comparison.operation,
+        })
     });
-    effects.max_by(|a, b| a.0.total_cmp(&b.0))
+    effects.max_by(|a, b| a.ratio.total_cmp(&b.ratio))
 }
 
 fn order_figure(orders: &OrdersReport, backend: &str) -> Option<SummaryFigure> {
-    let (own, _) = order_effect(orders, backend)?;
+    let OrderEffect {
+        ratio, interval, ..
+    } = order_effect(orders, backend)?;
     // No ranks: a structure that scans all faces hardly depends on the order, but is slow in all.
-    Some(SummaryFigure::ratio(own, None, Rank::Other, times(own)))
+    let text = times(ratio);
+    Some(SummaryFigure::ratio(ratio, interval, Rank::Other, text))
 }
 
 /// Returns a sentence for each kind of work of a study: the fastest backends, and the next one with the interval of its
@@ -466,7 +490,7 @@ fn fastest(
         if rows.len() < 2 || best.is_empty() {
             return None;
         }
-        let names = match best.len() == rows.len() {
+        let names = match best.len() == rows.len() && rows[0].meshes == 1 {
             true => "no clear difference".to_owned(),
             false => best.iter().map(name).collect::<Vec<_>>().join(" or "),
         };
@@ -515,11 +539,12 @@ pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String
         less_memory(study, queries, leader),
         few_queries(study),
         one_operation(study, leader),
-        order.map(|(factor, operation)| {
+        order.map(|order| {
             format!(
-                "another order of the elements ({} takes up to {} in its worst order, in {operation})",
+                "another order of the elements ({} takes up to {} in its worst order, in {})",
                 leader.backend,
-                times(factor)
+                times(order.ratio),
+                order.operation
             )
         }),
     ];

@@ -7,6 +7,9 @@ use maud::Escaper;
 use crate::canvas::{Anchor, Canvas, DASHES, Paint, Shape, Style};
 use crate::colours::{BACKGROUND, TEXT_COLOUR};
 
+/// Height of the texts that do not name theirs.
+const USUAL_SIZE: u32 = 12;
+
 /// What a picture shows, for screen readers and search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Words<'w> {
@@ -31,7 +34,7 @@ pub(crate) fn element(
         &mut svg,
         format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}{unit}\" height=\"{down}{unit}\" viewBox=\"0 0 {width} {height}\" \
-             font-family=\"system-ui, sans-serif\" fill=\"{TEXT_COLOUR}\" "
+             font-family=\"system-ui, sans-serif\" font-size=\"{USUAL_SIZE}\" fill=\"{TEXT_COLOUR}\" "
         ),
     );
     match words {
@@ -99,15 +102,18 @@ fn write_shape(svg: &mut String, shape: &Shape) {
                 format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>"),
             );
         }
-        Shape::Path { points, paint } => {
+        Shape::Path { parts, paint } => {
             *svg += "<path d=\"";
-            for (number, point) in points.iter().enumerate() {
-                let step = if number == 0 { 'M' } else { 'L' };
-                let [x, y] = point.map(Number);
-                write(svg, format_args!("{step}{x} {y}"));
-            }
-            if matches!(paint, Paint::Fill(_)) {
-                svg.push('Z');
+            for part in parts {
+                for (number, point) in part.iter().enumerate() {
+                    // Lines follow a start without a letter.
+                    let step = ["M", "L", " "][number.min(2)];
+                    let [x, y] = point.map(Number);
+                    write(svg, format_args!("{step}{x} {y}"));
+                }
+                if matches!(paint, Paint::Fill(_)) {
+                    svg.push('Z');
+                }
             }
             write(svg, format_args!("\" {paint}/>"));
         }
@@ -125,7 +131,7 @@ fn write_shape(svg: &mut String, shape: &Shape) {
         }
         Shape::Text { at, text, style } => {
             let [x, y] = at.map(Number);
-            write(svg, format_args!("<text x=\"{x}\" y=\"{y}\" {style}>"));
+            write(svg, format_args!("<text x=\"{x}\" y=\"{y}\"{style}>"));
             write_escaped(svg, text);
             *svg += "</text>";
         }
@@ -170,9 +176,11 @@ impl Display for Paint {
                 width,
                 dashed,
             } => {
-                let width = Number(width);
                 write!(f, "fill=\"none\" stroke=\"{colour}\"")?;
-                write!(f, " stroke-width=\"{width}\"")?;
+                if width != 1.0 {
+                    let width = Number(width);
+                    write!(f, " stroke-width=\"{width}\"")?;
+                }
                 if dashed {
                     let [dash, gap] = DASHES;
                     write!(f, " stroke-dasharray=\"{dash} {gap}\"")?;
@@ -186,7 +194,9 @@ impl Display for Paint {
 impl Display for Style {
     /// Writes the attributes of a text. The attributes that a text has without them are left out.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "font-size=\"{}\"", self.size)?;
+        if self.size != USUAL_SIZE {
+            write!(f, " font-size=\"{}\"", self.size)?;
+        }
         match self.anchor {
             Anchor::Start => {}
             Anchor::Middle => write!(f, " text-anchor=\"middle\"")?,
@@ -218,7 +228,9 @@ mod tests {
         canvas.ring([1.0, 2.0], 3.0, "#000000");
         let style = Style::new(11).end().bold(true);
         canvas.text([1.0, 2.0], "a < b", style);
-        canvas.text([1.0, 2.0], "c", Style::new(11).colour("#66686c"));
+        canvas.text([1.0, 2.0], "c", Style::new(USUAL_SIZE).colour("#66686c"));
+        let lines = [[[0.0, 0.0], [1.0, 1.0]], [[2.0, 0.0], [3.0, 1.0]]];
+        canvas.lines(lines.into_iter(), "#000000", 1.0);
         let panels = [([0.0, 0.0], &canvas), ([52.0, 0.0], &canvas)];
         let words = Words {
             title: "\"title\"",
@@ -228,13 +240,14 @@ mod tests {
         let shapes = "<g><title>&lt;&amp;&gt;</title>\
             <rect x=\"0.33\" y=\"0\" width=\"3\" height=\"4\" fill=\"#ff0080\"/>\
             <path d=\"M5 6L7 8.13\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.5\" stroke-dasharray=\"4 3\"/></g>\
-            <path d=\"M1 1L2 1L2 2Z\" fill=\"#000000\"/>\
+            <path d=\"M1 1L2 1 2 2Z\" fill=\"#000000\"/>\
             <path d=\"M3.8 3.8h2.4v2.4h-2.4Z\" fill=\"#000000\"/>\
             <circle cx=\"1\" cy=\"2\" r=\"3\" fill=\"none\" stroke=\"#000000\" stroke-width=\"1.2\"/>\
             <text x=\"1\" y=\"2\" font-size=\"11\" text-anchor=\"end\" font-weight=\"bold\">a &lt; b</text>\
-            <text x=\"1\" y=\"2\" font-size=\"11\" fill=\"#66686c\">c</text>";
+            <text x=\"1\" y=\"2\" fill=\"#66686c\">c</text>\
+            <path d=\"M0 0L1 1M2 0L3 1\" fill=\"none\" stroke=\"#000000\"/>";
         let head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"92\" height=\"30.5\" viewBox=\"0 0 92 30.5\" \
-            font-family=\"system-ui, sans-serif\" fill=\"#17181a\" role=\"img\" aria-label=\"&quot;title&quot;\">\
+            font-family=\"system-ui, sans-serif\" font-size=\"12\" fill=\"#17181a\" role=\"img\" aria-label=\"&quot;title&quot;\">\
             <title>&quot;title&quot;</title><desc>&lt;what&gt;</desc><style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
         let expected = format!("{head}{shapes}<g transform=\"translate(52 0)\">{shapes}</g></svg>");
         assert_eq!(svg, expected);

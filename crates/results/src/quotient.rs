@@ -27,7 +27,7 @@ impl Report {
     pub fn quotient(&self, operation: &str, backend: &str, other: &str) -> Option<Quotient> {
         let [own, other] = [backend, other].map(|name| measured(self, operation, name));
         let (own, other) = (own?, other?);
-        let value = shown_ratio(own.ns_per_element?, other.ns_per_element?);
+        let (ns, other_ns) = (own.ns_per_element?, other.ns_per_element?);
         let samples = |row: &ResultRow| {
             let mut samples = self.samples.iter();
             samples.find(|s| !s.control && s.backend == row.backend && s.operation == operation)
@@ -42,8 +42,8 @@ impl Report {
         };
         let confidence = self.run.settings.confidence;
         Some(Quotient {
-            ratio: value,
-            interval: found.and_then(|found| found.moved_to(value).interval(confidence)),
+            ratio: shown_ratio(ns, other_ns),
+            interval: found.and_then(|found| found.moved_to(ns / other_ns).interval(confidence)),
             meshes: 1,
         })
     }

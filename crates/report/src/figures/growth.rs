@@ -6,16 +6,11 @@ use sixfold_results::{CacheLimit, Fit, GrowthReport, OperationInfo, ResultRow, S
 
 use super::{marked, per_unit};
 use crate::Picture;
-use crate::axes::{Axes, Curve, CurvePoint, LogScale};
+use crate::axes::{ACROSS, Axes, COLUMNS, Curve, CurvePoint, LogScale, SIZE, UPWARDS};
 use crate::canvas::{Canvas, Style};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour, column_shape};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
-
-/// Size of a panel, and the places of its axes.
-const SIZE: [f64; 2] = [440.0, 300.0];
-const ACROSS: [f64; 2] = [70.0, 282.0];
-const UPWARDS: [f64; 2] = [256.0, 44.0];
 
 /// Draws a panel for each operation. All panels have the same axes.
 pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Option<Figure> {
@@ -71,7 +66,7 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
     });
     Some(Figure {
         id: id.into(),
-        picture: Picture::grid(&title, 2, panels),
+        picture: Picture::grid(&title, COLUMNS, panels),
         title,
         caption: format!(
             "The meshes are made by Sixfold (the shape {}), not read from a file. Both axes are logarithmic and the same in all panels, so a straight line is a power of the \

@@ -14,9 +14,9 @@ use crate::matrix::{Cell, Matrix, Source};
 const MAX_RATIO: f64 = 1000.0;
 /// Width of the names, width of a column, height of the head and of a row.
 const NAMES: f64 = 170.0;
-const COLUMN: f64 = 104.0;
+const COLUMN: f64 = 108.0;
 const HEAD: f64 = 26.0;
-/// With more columns, they are narrower, and their names have two lines.
+/// With more columns, they are narrower.
 const MOST_WIDE_COLUMNS: usize = 6;
 const NARROW_COLUMN: f64 = 80.0;
 const LINE: f64 = 14.0;
@@ -48,24 +48,22 @@ pub(super) fn figure(
     if matrix.lines.is_empty() {
         return None;
     }
-    let is_wide = matrix.backends.len() <= MOST_WIDE_COLUMNS;
-    let (column_width, head) = match is_wide {
-        true => (COLUMN, HEAD),
-        false => (NARROW_COLUMN, HEAD + LINE),
+    let column_width = match matrix.backends.len() <= MOST_WIDE_COLUMNS {
+        true => COLUMN,
+        false => NARROW_COLUMN,
     };
+    let letters = (column_width / text_width("n", 12)) as usize;
+    let names = matrix.backends.iter().map(|name| lines_of(name, letters));
+    let names: Vec<Vec<String>> = names.collect();
+    let most_lines = names.iter().map(Vec::len).max().unwrap_or(1);
+    let head = HEAD + LINE * (most_lines - 1) as f64;
     let width = NAMES + column_width * matrix.backends.len() as f64;
     let mut canvas = Canvas::new(width, head + ROW * matrix.lines.len() as f64 + 4.0);
-    for (column, name) in matrix.backends.iter().enumerate() {
+    for (column, name) in names.iter().enumerate() {
         let x = NAMES + column_width * (column as f64 + 0.5);
-        let (first, second) = match name.rfind('-').filter(|_| !is_wide) {
-            Some(dash) => name.split_at(dash + 1),
-            None => ("", name.as_str()),
-        };
-        let style = Style::new(12).middle();
-        let lines = [(first, LINE), (second, 0.0)].into_iter();
-        for (text, above) in lines.filter(|(text, _)| !text.is_empty()) {
-            let letters = (column_width / text_width("n", 12)) as usize;
-            canvas.text([x, head - 8.0 - above], &cut(text, letters), style);
+        for (above, text) in name.iter().rev().enumerate() {
+            let y = head - 8.0 - LINE * above as f64;
+            canvas.text([x, y], text, Style::new(12).middle());
         }
     }
     for (number, line) in matrix.lines.iter().enumerate() {
@@ -86,6 +84,20 @@ pub(super) fn figure(
         source: String::new(),
         command: command.into(),
     })
+}
+
+/// Divides a name after its hyphens and spaces into lines of at most `letters`. Longer parts are cut.
+fn lines_of(name: &str, letters: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for part in name.split_inclusive(['-', ' ', '_']) {
+        let length = |text: &str| text.trim_end().chars().count();
+        match lines.last_mut() {
+            Some(line) if length(line) + length(part) <= letters => *line += part,
+            _ => lines.push(part.to_owned()),
+        }
+    }
+    let lines = lines.iter().map(|line| cut(line.trim_end(), letters));
+    lines.collect()
 }
 
 /// Explains the cells that the figure has.
@@ -135,16 +147,17 @@ fn caption(matrix: &Matrix) -> String {
 fn hatch(canvas: &mut Canvas, [x, y]: [f64; 2], [width, height]: [f64; 2], ink: &'static str) {
     const WIDTH: f64 = 9.0;
     const APART: f64 = 4.5;
-    for left in [x, x + width - WIDTH] {
-        let mut across = APART;
-        while across < WIDTH + height {
+    let count = ((WIDTH + height) / APART).ceil() as usize;
+    let lines = [x, x + width - WIDTH].into_iter().flat_map(|left| {
+        (1..count).map(move |number| {
+            let across = APART * number as f64;
             // From the upper or right side to the left or lower side.
             let from = [left + across.min(WIDTH), y + (across - WIDTH).max(0.0)];
             let to = [left + (across - height).max(0.0), y + across.min(height)];
-            canvas.line(from, to, ink, 0.8);
-            across += APART;
-        }
-    }
+            [from, to]
+        })
+    });
+    canvas.lines(lines, ink, 0.8);
 }
 
 fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, cell: &Cell, operation: &str) {
@@ -191,6 +204,19 @@ fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, cell: &Cell, ope
 mod tests {
     use super::*;
     use crate::colours::contrast;
+
+    #[test]
+    fn names_are_divided_and_only_long_parts_are_cut() {
+        assert_eq!(lines_of("half-edge", 16), ["half-edge"]);
+        assert_eq!(lines_of("indexed-face-set", 16), ["indexed-face-set"]);
+        assert_eq!(lines_of("indexed-face-set", 11), ["indexed-", "face-set"]);
+        assert_eq!(
+            lines_of("CGAL Surface_mesh", 11),
+            ["CGAL", "Surface_", "mesh"]
+        );
+        assert_eq!(lines_of("日本語日本語", 4), ["日本語…"]);
+        assert_eq!(lines_of("", 4), [""; 0]);
+    }
 
     #[test]
     fn numbers_are_read_on_every_colour() {

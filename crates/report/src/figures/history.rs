@@ -7,7 +7,7 @@ use sixfold_results::{HistoryGroup, HistoryPoint, HistoryRow, Measurement};
 use super::changes::cut;
 use super::{file_name, ratio_axis};
 use crate::Picture;
-use crate::axes::{Axes, Curve, CurvePoint, LogScale};
+use crate::axes::{ACROSS, Axes, COLUMNS, Curve, CurvePoint, LogScale, SIZE, UPWARDS};
 use crate::canvas::{Canvas, Style};
 use crate::changes::verdict_text;
 use crate::colours::{INTERVAL_COLOUR, column_colour, column_shape};
@@ -18,14 +18,10 @@ use crate::history::table;
 /// Maximum number of panels, and of documents in the picture: the last ones.
 const PANELS: usize = 24;
 const DOCUMENTS: usize = 200;
-/// Size of a panel, and the places of its axes.
-const SIZE: [f64; 2] = [440.0, 240.0];
-const ACROSS: [f64; 2] = [46.0, 280.0];
-const UPWARDS: [f64; 2] = [196.0, 44.0];
 /// The axes reach at least to this ratio, so that noise does not fill a panel.
 const LEAST_RATIO: f64 = 2.0;
 /// Maximum number of letters of the title of a panel.
-const LETTERS: usize = 60;
+const LETTERS: usize = 42;
 
 /// Draws the panels with the largest changes first. Returns `None` without rows.
 pub(crate) fn figure(group: &HistoryGroup, id: &str, command: &str) -> Option<Figure> {
@@ -82,7 +78,7 @@ pub(crate) fn figure(group: &HistoryGroup, id: &str, command: &str) -> Option<Fi
     group.write_csv(&mut csv).expect("memory can be written");
     (!drawn.is_empty()).then(|| Figure {
         id: id.into(),
-        picture: Picture::grid(&title, 2, drawn),
+        picture: Picture::grid(&title, COLUMNS, drawn),
         title,
         caption: format!(
             "Each dot is the time in a document divided by that in the first one, on a logarithmic axis; the numbers of \

@@ -6,17 +6,19 @@ use sixfold_results::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::Picture;
-use crate::axes::LogScale;
-use crate::canvas::{Canvas, Style};
-use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, order_mark};
+use crate::axes::{COLUMNS, LogScale};
+use crate::canvas::{Canvas, Style, text_width};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, order_mark};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table};
 
 /// Size of a panel, and the places of its parts.
-const WIDTH: f64 = 520.0;
-const HEAD: f64 = 62.0;
+const WIDTH: f64 = 364.0;
+const HEAD: f64 = 46.0;
 const ROW: f64 = 24.0;
-const POINTS: [f64; 2] = [126.0, 290.0];
+const POINTS: [f64; 2] = [122.0, 236.0];
+/// Height of a line of the names of the orders.
+const LINE: f64 = 17.0;
 /// The points of one structure are on lines of their own, so that they do not hide each other.
 const APART: f64 = 4.0;
 
@@ -76,12 +78,12 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
     );
     Some(Figure {
         id: id.into(),
-        picture: Picture::grid(&title, 2, panels),
+        picture: Picture::grid(&title, COLUMNS, panels),
         title,
         caption: format!(
             "A point is the time of a structure in one order of the elements, divided by that of the best order of this structure, \
-             on a logarithmic scale that is the same in all panels: on the right is slower. The text names the slowest order, and \
-             gives the time of the best order.{} The table has all times per element.",
+             on a logarithmic scale that is the same in all panels: on the right is slower. The text is the ratio of the slowest order, and \
+             the time of the best order.{} The table has all times per element.",
             match points.iter().any(|point| point.is_unsure) {
                 true => " Open points are times from too few launches or samples to be ranked.",
                 false => "",
@@ -150,35 +152,39 @@ fn panel(
     scale: LogScale,
     rows: usize,
 ) -> Canvas {
-    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64);
-    canvas.text(
-        [0.0, 14.0],
-        &comparison.operation,
-        Style::new(14).bold(true),
-    );
-    let mut x = 0.0;
-    for (place, name) in names.iter().enumerate() {
+    // The names of the orders, in as many lines as they need.
+    let mut keys = Vec::new();
+    let (mut x, mut y) = (0.0, 31.0);
+    for name in names {
+        let width = 26.0 + text_width(name, 12);
+        if x > 0.0 && x + width > WIDTH {
+            (x, y) = (0.0, y + LINE);
+        }
+        keys.push([x, y]);
+        x += width;
+    }
+    let head = y - LINE + 2.0 + HEAD;
+    let mut canvas = Canvas::new(WIDTH, head + ROW * rows as f64);
+    let style = Style::new(14).bold(true);
+    canvas.text([0.0, 14.0], &comparison.operation, style);
+    for (place, (name, [x, y])) in names.iter().zip(keys).enumerate() {
         let (colour, shape) = order_mark(place);
-        canvas.point(shape, [x + 4.0, 27.0], 4.0, colour);
-        canvas.text([x + 11.0, 31.0], name, Style::new(12).colour(FAINT_COLOUR));
-        x += 26.0 + crate::canvas::text_width(name, 12);
+        canvas.point(shape, [x + 4.0, y - 4.0], 4.0, colour);
+        canvas.text([x + 11.0, y], name, Style::new(12).colour(FAINT_COLOUR));
     }
-    let bottom = HEAD + ROW * lines.len() as f64 - 6.0;
-    for tick in scale.ticks() {
-        let x = scale.place(tick);
-        canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
-        let label = Style::new(12).middle().colour(FAINT_COLOUR);
-        canvas.text([x, HEAD - 8.0], &format!("{tick} ×"), label);
-    }
+    let bottom = head + ROW * lines.len() as f64 - 6.0;
+    let label = |tick: f64| format!("{tick} ×");
+    let ends = [head - 4.0, bottom];
+    scale.draw_ticks(&mut canvas, ends, head - 8.0, FAINT_COLOUR, &label);
     let per = per_unit(lines.first().map_or("", |line| line.per));
     for (number, line) in lines.iter().enumerate() {
-        let y = HEAD + ROW * number as f64 + 6.0;
+        let y = head + ROW * number as f64 + 6.0;
         canvas.text(
             [POINTS[0] - 10.0, y + 4.0],
             line.backend,
             Style::new(12).end(),
         );
-        let mut worst = (0, 1.0);
+        let mut worst: f64 = 1.0;
         let mut best = f64::INFINITY;
         let middle = (line.points.len() as f64 - 1.0) / 2.0;
         let points = line.points.iter().enumerate();
@@ -191,9 +197,7 @@ fn panel(
             },
         ) in points.filter_map(|(i, p)| Some((i, p.as_ref()?)))
         {
-            if ratio > worst.1 {
-                worst = (place, ratio);
-            }
+            worst = worst.max(ratio);
             best = best.min(ns);
             let title = format!(
                 "{}, {}: {} × the time of its best order, {} {per}",
@@ -213,8 +217,8 @@ fn panel(
         }
         let text = match worst {
             _ if best.is_infinite() => "–".into(),
-            (_, 1.0) => format!("all {}", duration(best)),
-            (place, ratio) => format!("{} {} of {}", names[place], times(ratio), duration(best)),
+            1.0 => format!("all {}", duration(best)),
+            worst => format!("{} of {}", times(worst), duration(best)),
         };
         canvas.text([POINTS[1] + 14.0, y + 4.0], &text, Style::new(12));
     }

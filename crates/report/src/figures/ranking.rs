@@ -8,9 +8,7 @@ use super::per_unit;
 use crate::Picture;
 use crate::axes::{LogScale, scatter};
 use crate::canvas::{Canvas, Style, text_width};
-use crate::colours::{
-    BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, TEXT_COLOUR, column_colour,
-};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, INTERVAL_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::rows;
 use crate::figure::{Figure, Table};
 use crate::matrix::{Cell, Matrix, Source};
@@ -286,12 +284,9 @@ fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Ca
     let faint = Style::new(12).colour(FAINT_COLOUR);
     canvas.text([0.0, 31.0], &best, faint);
     let bottom = HEAD + ROW * cells.len() as f64 - 4.0;
-    for tick in scale.ticks() {
-        let x = scale.place(tick);
-        canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
-        let label = Style::new(12).middle().colour(FAINT_COLOUR);
-        canvas.text([x, bottom + 13.0], &format!("{} ×", tick_text(tick)), label);
-    }
+    let label = |tick: f64| format!("{} ×", tick_text(tick));
+    let ends = [HEAD - 4.0, bottom];
+    scale.draw_ticks(&mut canvas, ends, bottom + 13.0, FAINT_COLOUR, &label);
     for (number, cell) in cells.iter().enumerate() {
         bar(
             &mut canvas,

@@ -7,18 +7,13 @@ use sixfold_results::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
 use crate::Picture;
-use crate::axes::{Axes, LogScale, spread};
+use crate::axes::{ACROSS, Axes, COLUMNS, LogScale, SIZE, UPWARDS, spread};
 use crate::canvas::{Canvas, Style, text_width};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::rows as data;
 use crate::figure::{Figure, Table, byte_tick, duration_tick};
 
 type TimedRow<'a> = (&'a WhyRow, &'a Timed);
-
-/// Size of a panel, and the places of its axes.
-const SIZE: [f64; 2] = [420.0, 310.0];
-const ACROSS: [f64; 2] = [58.0, 290.0];
-const UPWARDS: [f64; 2] = [266.0, 44.0];
 
 /// Draws a panel for each structure with all relations. All panels have the same axes. Returns `None` if
 /// nothing was measured.
@@ -93,7 +88,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     };
     Some(Figure {
         id: id.into(),
-        picture: Picture::grid(&title, 2, panels),
+        picture: Picture::grid(&title, COLUMNS, panels),
         title,
         caption: format!(
             "Each point is one relation on one structure; all panels have the same axes. The dashed lines show the time in which \
@@ -119,8 +114,11 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
     for (_, [start, end]) in &roofs {
         canvas.dashed(*start, *end, TEXT_COLOUR, 1.0);
     }
-    // On fields of their own, so that no line goes through them.
-    for (buffer, [_, [x, y]]) in roofs {
+    // Above their lines near the ends, on fields of their own, so that no line goes through them.
+    let heights: Vec<f64> = roofs.iter().map(|(_, [_, end])| end[1]).collect();
+    let heights = spread(&heights, 16.0, [UPWARDS[1] + 16.0, UPWARDS[0]]);
+    for ((buffer, [from, to]), y) in roofs.into_iter().zip(heights) {
+        let x = to[0] + (y - to[1]) * (from[0] - to[0]) / (from[1] - to[1]);
         let text = format!("{:.0} GB/s", buffer.gb_per_s);
         let width = text_width(&text, 12) + 4.0;
         canvas.rect([x - width - 2.0, y - 15.0], [width, 14.0], BACKGROUND);

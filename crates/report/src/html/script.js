@@ -24,7 +24,7 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
     link.click();
     URL.revokeObjectURL(link.href);
   });
-  figure.querySelector('.source').append(' · numbers: ', button);
+  figure.querySelector('figcaption').append(' Numbers: ', button);
 }
 
 (() => {
@@ -36,38 +36,33 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
   const group = controls.querySelector('[name=group]');
   const search = controls.querySelector('[name=search]');
   const status = controls.querySelector('output');
+  const headers = [...table.tHead.rows[0].cells];
+  const backends = headers.slice(1).map((header) => header.textContent);
   const body = table.tBodies[0];
+  const value = (text) => Number(text.replaceAll(',', ''));
   const rows = [...body.rows].map((row, place) => ({
     row, place, name: row.dataset.operation, group: row.dataset.group,
-    cells: [...row.cells].slice(1).map((cell) => {
-      const number = (name) => (cell.dataset[name] === undefined ? null : Number(cell.dataset[name]));
+    cells: [...row.cells].slice(1).map((cell, column) => {
+      const {ns = '', ratio, to = '', samples = ''} = cell.dataset;
+      const [shortest, ...launches] = samples.split(' ');
       return {
-        cell, backend: cell.dataset.backend, bound: cell.dataset.source === 'bound',
-        ns: number('ns'), low: number('low'), high: number('high'), ratio: number('ratio'),
-        // The ratio to each backend, with its interval.
-        quotients: (cell.dataset.to ?? '').split(',').map((text) => text.split(' ').filter(Boolean).map(Number)),
-        samples: (cell.dataset.samples ?? '').split(' ').slice(1).map((launch) =>
-          launch.split(',').map((longer) => Number(cell.dataset.samples.split(' ')[0]) * (1 + Number(longer) / 1000))),
-        from: Number(cell.dataset.from), to: Number(cell.dataset.until), plain: cell.innerHTML, shown: null,
+        cell, backend: backends[column],
+        // The time and the ends of its interval.
+        times: ns.split(' ').filter(Boolean).map(Number),
+        ratio: ratio && Number(ratio),
+        // The ratio to each backend and the ends of its interval, as they are shown.
+        quotients: to.split('|').map((quotient) => quotient.split(' ')),
+        samples: launches.map((launch) => launch.split(',').map((longer) => shortest * (1 + longer / 1000))),
+        plain: {html: cell.innerHTML, classes: cell.className, style: cell.style.cssText}, shown: null,
       };
     }),
   }));
 
-  // Three significant digits, as in the figures.
-  const digits = (number, round = Math.round) => {
-    if (!Number.isFinite(number)) return '–';
-    if (number === 0) return '0';
-    const power = Math.floor(Math.log10(Math.abs(number))) - 2;
-    const rounded = power < 0
-      ? round(number * 10 ** -power + 1e-9) / 10 ** -power
-      : round(number / 10 ** power + 1e-9) * 10 ** power;
-    const places = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(rounded))));
-    return rounded.toLocaleString('en-US', {minimumFractionDigits: places, maximumFractionDigits: places});
-  };
-  const units = [['ns', 1], ['µs', 1e3], ['ms', 1e6], ['s', 1e9]];
-  const duration = (ns, round) => {
-    const [unit, size] = units.find(([, size]) => Number(digits(ns).replaceAll(',', '')) < 1e3 * size) ?? units.at(-1);
-    return `${digits(ns / size, round)} ${unit}`;
+  // With three significant digits.
+  const units = [['s', 1e9], ['ms', 1e6], ['µs', 1e3], ['ns', 1]];
+  const duration = (ns) => {
+    const [unit, size] = units.find(([, size]) => ns >= 0.9995 * size) ?? units.at(-1);
+    return `${(ns / size).toLocaleString('en-US', {minimumSignificantDigits: 3, maximumSignificantDigits: 3})} ${unit}`;
   };
   // The scale goes from 1 to 10, or from 1/10 to 10 about another baseline.
   let start = 1;
@@ -78,52 +73,45 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
     cell.style.setProperty('--to', low ? place(high) : 0);
     cell.classList.toggle('over', ratio > 10);
     cell.classList.toggle('under', ratio < start);
-    cell.classList.toggle('dot', true);
   };
   const reading = table.querySelector('.reading');
   const plainReading = reading.textContent;
   const scale = table.querySelector('.scale');
   const cellHtml = (text, small) => `${text}${small ? `<small>${small}</small>` : ''}`;
+  const column = () => backends.indexOf(baseline.value);
 
   const draw = () => {
     reading.textContent = figures.value === 'times'
-      ? 'Time for each element, with its 95 % interval where there are enough samples.'
+      ? `${reading.dataset.time} for each element, with its 95 % interval where there are enough samples.`
       : baseline.value === '' ? plainReading
-        : `Time divided by that of ${baseline.value}, with the 95 % interval of this ratio.`;
+        : `${reading.dataset.time} divided by that of ${baseline.value}, with the 95 % interval of this ratio.`;
     start = figures.value === 'times' || baseline.value === '' ? 1 : 0.1;
     table.style.setProperty('--start', place(1));
     scale.textContent = start === 1 ? 'from 1 to 10' : 'from 1/10 to 10, with a line at 1';
     for (const {cells} of rows) {
-      const column = cells.findIndex(({backend}) => backend === baseline.value);
-      const base = cells[column];
-      const fastest = baseline.value === '';
-      const shortest = Math.min(...cells.filter(({ns, bound}) => ns !== null && !bound).map(({ns}) => ns));
+      const measured = cells.filter(({cell, times}) => times.length && !cell.classList.contains('bound'));
+      const shortest = Math.min(...measured.map(({times: [ns]}) => ns));
       for (const entry of cells) {
-        const {cell, ns, low, high, bound} = entry;
-        entry.shown = ns;
-        if (ns === null) continue;
-        const sign = bound ? '≥ ' : cell.dataset.source === 'sampled' ? '~ ' : '';
-        const round = bound ? Math.floor : Math.round;
+        const {cell, times, ratio, plain} = entry;
+        cell.innerHTML = plain.html;
+        cell.className = plain.classes;
+        cell.style.cssText = plain.style;
+        entry.shown = ratio ?? times[0] ?? null;
+        if (!times.length) continue;
         if (figures.value === 'times') {
-          const ends = low === null ? '' : `${duration(low)} to ${duration(high)}`;
-          cell.innerHTML = cellHtml(sign + duration(ns, round), ends);
-          setDot(cell, ns / shortest, low / shortest, high / shortest);
-        } else if (fastest) {
-          cell.innerHTML = entry.plain;
-          if (entry.ratio !== null) setDot(cell, entry.ratio, entry.from, entry.to);
-          entry.shown = entry.ratio ?? ns;
-        } else if (!base || base.ns === null || base.bound) {
-          cell.textContent = '–';
-          cell.classList.remove('dot', 'over', 'under');
-          entry.shown = null;
-        } else {
-          // A lower bound has no ratio of its own.
-          const both = entry.ratio !== null && base.ratio !== null;
-          const [ratio = both ? entry.ratio / base.ratio : ns / base.ns, from, to] = entry.quotients[column] ?? [];
-          entry.shown = ratio;
-          const ends = entry === base || from === undefined ? '' : `${digits(from)} to ${digits(to)}`;
-          cell.innerHTML = cellHtml(`${sign}${digits(ratio, round)} ×`, ends);
-          setDot(cell, ratio, ends && from, to);
+          cell.innerHTML = cellHtml(cell.dataset.time, cell.dataset.ends);
+          setDot(cell, ...times.map((ns) => ns / shortest));
+          entry.shown = times[0];
+        } else if (baseline.value !== '') {
+          const [text, low, high] = entry.quotients[column()] ?? [];
+          entry.shown = text ? value(text) : null;
+          if (text) {
+            cell.innerHTML = cellHtml(`${cell.dataset.sign ?? ''}${text} ×`, low && `${low} to ${high}`);
+            setDot(cell, value(text), low && value(low), high && value(high));
+          } else {
+            cell.textContent = '–';
+            cell.classList.remove('dot', 'over', 'under');
+          }
         }
       }
     }
@@ -141,27 +129,38 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
     status.textContent = `${visible} of ${rows.length} operations`;
   };
 
-  // The samples of an operation: a line of ticks for each launch, on one logarithmic axis for all columns.
-  const NAMES = 130, LENGTH = 460, LAUNCH = 5, TOP = 22;
+  // The samples of an operation: a line of ticks for each launch, on one logarithmic axis for all columns that are at
+  // most ten times slower than the fastest. On an axis with all, the ticks of each would be one.
+  const NAMES = 130, LENGTH = 560, LAUNCH = 6, TOP = 22;
   const samplesOf = ({name, cells}) => {
-    const known = cells.filter(({samples}) => samples.length);
-    const all = known.flatMap(({samples}) => samples.flat());
-    const [least, most] = [Math.min(...all), Math.max(...all) * 1.001];
+    const known = cells.filter(({samples}) => samples.length).map(({backend, samples}) => {
+      const all = samples.flat();
+      return {backend, samples, least: Math.min(...all), most: Math.max(...all)};
+    });
+    const least = Math.min(...known.map((column) => column.least));
+    const isNear = (column) => column.least <= 10 * least;
+    const most = Math.max(...known.filter(isNear).map((column) => column.most)) * 1.001;
     const across = (ns) => (NAMES + LENGTH * Math.log(ns / least) / Math.log(most / least)).toFixed(1);
     let y = TOP;
-    const lines = known.map(({cell: {dataset: {backend}}, samples}) => {
-      const middle = y + samples.length * LAUNCH / 2 + 4;
-      const ticks = samples.map((launch, nth) => `<path stroke="var(--link)" d="${launch.map((ns) =>
-        `M${across(ns)} ${y + nth * LAUNCH}v${LAUNCH - 1}`).join('')}"><title>${backend}, launch ${nth + 1}: ${
-        launch.length} samples, ${duration(Math.min(...launch))} to ${duration(Math.max(...launch))}</title></path>`);
-      y += Math.max(16, samples.length * LAUNCH + 8);
-      return `<text x="${NAMES - 8}" y="${middle}" text-anchor="end">${backend}</text>${ticks.join('')}`;
+    const lines = known.map((column) => {
+      const {backend, samples} = column;
+      const range = (times) => `${duration(Math.min(...times))} to ${duration(Math.max(...times))}`;
+      const height = isNear(column) ? Math.max(16, samples.length * LAUNCH + 8) : 18;
+      const middle = y + (height - 8) / 2 + 4;
+      const marks = isNear(column)
+        ? samples.map((launch, nth) => `<path stroke="var(--link)" stroke-width="2" stroke-opacity=".6" d="${launch.map((ns) =>
+          `M${across(ns)} ${y + nth * LAUNCH}v${LAUNCH - 1}`).join('')}"><title>${backend}, launch ${nth + 1}: ${
+          launch.length} samples, ${range(launch)}</title></path>`).join('')
+        : `<text x="${NAMES + LENGTH}" y="${middle}" text-anchor="end">beyond: ${range(samples.flat())} →</text>`;
+      y += height;
+      return `<text x="${NAMES - 8}" y="${middle}" text-anchor="end">${backend}</text>${marks}`;
     });
     const label = `The samples of ${name} by launch`;
+    const about = 'Each tick is a sample, each line of ticks a launch; the axis is logarithmic.';
     return `<div class="scroll" tabindex="0" role="region" aria-label="Figure: ${label}"><svg role="img" aria-label="${label}"
-      width="${NAMES + LENGTH + 40}" height="${y}" font-size="12" fill="currentColor"><title>${label}</title><desc>Each tick is a sample,
-      each line of ticks a launch; the axis is logarithmic.</desc><text x="${NAMES}" y="12">${duration(least)}</text><text
-      x="${NAMES + LENGTH}" y="12" text-anchor="end">${duration(most)}</text>${lines.join('')}</svg></div>`;
+      width="${NAMES + LENGTH + 40}" height="${y}" font-size="12" fill="currentColor"><title>${label}</title><desc>${about}</desc><text
+      x="${NAMES}" y="12">${duration(least)}</text><text x="${NAMES + LENGTH}" y="12" text-anchor="end">${
+      duration(most)}</text>${lines.join('')}</svg></div><small>${about}</small>`;
   };
   const close = () => {
     for (const opened of body.querySelectorAll('.samples')) opened.remove();
@@ -187,14 +186,13 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
     });
   }
 
-  const headers = [...table.tHead.rows[0].cells];
   let sorted = {column: -1, down: false};
   const sort = () => {
     const {column, down} = sorted;
-    const value = ({cells, name}) => (column === 0 ? name : cells[column - 1].shown);
+    const key = ({cells, name}) => (column === 0 ? name : cells[column - 1].shown);
     const order = [...rows].sort((a, b) => {
       if (column < 0) return a.place - b.place;
-      const [x, y] = [value(a), value(b)];
+      const [x, y] = [key(a), key(b)];
       // Operations without a figure are last in both directions.
       if (x === null || y === null) return (x === null) - (y === null) || a.place - b.place;
       const sign = down ? -1 : 1;

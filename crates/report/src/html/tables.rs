@@ -1,7 +1,7 @@
 //! The tables of the page: the structures by kind of work, all operations, and plain tables.
 
 use maud::{Markup, html};
-use sixfold_results::numbers::counted;
+use sixfold_results::numbers::{counted, duration, figure, rounded_down};
 use sixfold_results::{Quotient, Standing};
 
 use super::prose;
@@ -62,8 +62,15 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
             (class, dot_places(ratio, interval))
         }
     };
+    let interval = match figure.drawing {
+        Drawing::Dot {
+            interval: Some([low, high]),
+            ..
+        } if low < high => Some(format!("{} to {}", self::figure(low), self::figure(high))),
+        _ => None,
+    };
     html! {
-        td class=(class) style=(style) {
+        td class=(class) style=(style) title=[interval] {
             @match figure.rank {
                 Rank::Best => { span.mark { "● " } b { (figure.text) } }
                 Rank::Shared => { span.mark { "◐ " } b { (figure.text) } }
@@ -99,6 +106,12 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         .iter()
         .flat_map(|line| &line.cells)
         .any(|cell| !cell.launches.is_empty());
+    let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
+    let is_mean = cells.any(|cell| !cell.each.is_empty());
+    let time = match is_mean {
+        true => "Geometric mean over the meshes of the time",
+        false => "Time",
+    };
     html! {
         @if has_samples {
             p.faint.hint hidden { "Choose an operation to see all its samples." }
@@ -129,9 +142,14 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
             table.operations {
                 caption {
                     span {
-                        span.reading {
-                            "Time divided by that of the fastest, with its " (matrix.confidence)
-                            " interval where there are enough samples."
+                        span.reading data-time=(time) {
+                            @if is_mean {
+                                (time) " divided by that of the fastest of each mesh, with the " (matrix.confidence)
+                                " interval of other meshes like these, which is not below 1."
+                            } @else {
+                                (time) " divided by that of the fastest, with its " (matrix.confidence)
+                                " interval where there are enough samples."
+                            }
                         }
                         " A dot is a ratio on a logarithmic scale "
                         span.scale { "from 1 to 10" }
@@ -161,12 +179,11 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
 }
 
 fn operation_cell(line: &Line, cell: &Cell) -> Markup {
-    let (class, word) = match cell.source {
-        Source::Measured => ("dot", "measured"),
-        Source::Sampled => ("dot", "sampled"),
-        Source::Bound => ("dot bound", "bound"),
-        Source::Impossible => ("none", "impossible"),
-        Source::NotRun => ("none", "not run"),
+    let (class, sign) = match cell.source {
+        Source::Measured => ("dot", None),
+        Source::Sampled => ("dot", Some("~ ")),
+        Source::Bound => ("dot bound", Some("≥ ")),
+        Source::Impossible | Source::NotRun => ("none", None),
     };
     let samples = match cell.samples {
         0 => String::new(),
@@ -183,16 +200,17 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
         true => format!("{class} over"),
         false => class.to_owned(),
     };
-    let quotients = (!cell.quotients.is_empty()).then(|| quotients(cell));
-    let [low, high] = match cell.ns_interval {
-        Some([low, high]) => [Some(low), Some(high)],
-        None => [None, None],
-    };
+    let time = cell.ns.map(|_| match cell.source {
+        Source::Sampled => format!("~ {}", cell.time_text()),
+        _ => cell.time_text(),
+    });
+    let ends = cell.ns_interval.map(|ends| ends.map(duration).join(" to "));
     html! {
         td class=(class) style=[places] title=(title.join("; "))
-            data-backend=(cell.backend) data-source=(word)
-            data-ns=[cell.ns] data-low=[low] data-high=[high] data-ratio=[cell.ratio] data-from=[cell.interval.map(|[low, _]| low)] data-until=[cell.interval.map(|[_, high]| high)]
-            data-to=[quotients] data-samples=[(!cell.launches.is_empty()).then(|| samples_text(cell))]
+            data-sign=[sign] data-time=[time] data-ends=[ends] data-ns=[times_of_dot(cell)]
+            data-ratio=[cell.ratio.map(|ratio| format!("{ratio:.4e}"))]
+            data-to=[cell.ns.map(|_| quotients(line, cell))]
+            data-samples=[(!cell.launches.is_empty()).then(|| samples_text(cell))]
         {
             @match cell.ratio {
                 Some(_) => {
@@ -229,20 +247,39 @@ fn samples_text(cell: &Cell) -> String {
     format!("{shortest:.5e} {}", launches.join(" "))
 }
 
-/// Returns the quotients of the time of a cell and that of each backend, with commas between them. A quotient is
-/// the ratio and the ends of its interval, such as `1.31 1.28 1.34`. A backend without a time has no numbers.
-fn quotients(cell: &Cell) -> String {
-    let text = |quotient: &Option<Quotient>| match quotient {
-        Some(Quotient {
-            ratio,
-            interval: Some([low, high]),
-            ..
-        }) => format!("{ratio:.7e} {low:.7e} {high:.7e}"),
-        Some(Quotient { ratio, .. }) => format!("{ratio:.7e}"),
-        None => String::new(),
+/// Returns the time of a cell and the ends of its interval in nanoseconds, for the place of its dot.
+fn times_of_dot(cell: &Cell) -> Option<String> {
+    let times = [cell.ns?].into_iter();
+    let times = times.chain(cell.ns_interval.into_iter().flatten());
+    Some(
+        times
+            .map(|ns| format!("{ns:.4e}"))
+            .collect::<Vec<_>>()
+            .join(" "),
+    )
+}
+
+/// Returns the quotients of the time of a cell and that of each backend of its line, with `|` between them. A quotient is
+/// the ratio and the ends of its interval as they are shown, such as `1.31 1.28 1.34`. A backend without a time, or with
+/// a lower bound, has no numbers.
+fn quotients(line: &Line, cell: &Cell) -> String {
+    let of_bound = |other: &Cell| {
+        let (own, other) = cell.ratio.filter(|_| cell.is_bound()).zip(other.ratio)?;
+        Some(figure(rounded_down(own / other)))
     };
-    let texts: Vec<String> = cell.quotients.iter().map(text).collect();
-    texts.join(",")
+    let text = |(place, other): (usize, &Cell)| match cell.quotients.get(place).copied().flatten() {
+        _ if other.is_bound() => String::new(),
+        _ if other.backend == cell.backend => figure(1.0),
+        Some(Quotient {
+            ratio, interval, ..
+        }) => {
+            let numbers = [ratio].into_iter().chain(interval.into_iter().flatten());
+            numbers.map(figure).collect::<Vec<_>>().join(" ")
+        }
+        None => of_bound(other).unwrap_or_default(),
+    };
+    let texts: Vec<String> = line.cells.iter().enumerate().map(text).collect();
+    texts.join("|")
 }
 
 /// Returns a table without bars. `caption` says what the numbers are.
@@ -267,7 +304,7 @@ pub(super) fn plain_table(table: &Table, caption: &str) -> Markup {
                     @for (place, row) in table.rows.iter().enumerate() {
                         tr {
                             @for (column, cell) in row.iter().enumerate() {
-                                @if column > 0 { td.words[columns[column].1] { (cell.replace(" ×", "\u{a0}×")) } }
+                                @if column > 0 { (plain_cell(cell, columns[column].1)) }
                                 @else if let Some(part) = table.links.get(place) {
                                     th scope="row" { a href={ "#" (part) } { (cell) } }
                                 }
@@ -278,6 +315,15 @@ pub(super) fn plain_table(table: &Table, caption: &str) -> Markup {
                 }
             }
         }))
+    }
+}
+
+/// Returns a cell, without a class if it has numbers.
+fn plain_cell(cell: &str, has_words: bool) -> Markup {
+    let cell = cell.replace(" ×", "\u{a0}×");
+    match has_words {
+        true => html! { td.words { (cell) } },
+        false => html! { td { (cell) } },
     }
 }
 

@@ -212,7 +212,7 @@ fn the_first_screen_answers() {
     assert_eq!(
         over,
         [
-            "mean of 2 operations",
+            "mean of 2 queries and passes",
             "bytes per vertex",
             "repeated builds"
         ]

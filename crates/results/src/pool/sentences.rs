@@ -62,14 +62,18 @@ impl Pool {
     }
 }
 
-/// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 %
-/// slower, or by less than the error of the means of one mesh. A lower bound is never one of them.
-/// Empty if `rows` has only lower bounds.
+/// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 % slower, or whose
+/// [interval](Overall::interval_to_first) contains 1; without an interval, those that are slower by less than the error
+/// of the means of one mesh. A lower bound is never one of them. Empty if `rows` has only lower bounds.
 pub fn leaders(rows: &[Overall]) -> &[Overall] {
     let equal = |row: &&Overall| {
         let error = row.log_error.hypot(rows[0].log_error);
-        let most = rows[0].ratio_to_best * error.exp().max(EQUAL_UP_TO);
-        !row.bound && row.ratio_to_best <= most
+        let ratio = row.ratio_to_best / rows[0].ratio_to_best;
+        let is_open = match row.interval_to_first() {
+            Some([low, _]) => low <= 1.0,
+            None => ratio <= error.exp(),
+        };
+        !row.bound && (ratio <= EQUAL_UP_TO || is_open)
     };
     &rows[..rows.iter().take_while(equal).count()]
 }

@@ -8,7 +8,7 @@ use super::{Mesh, leaders_of};
 use crate::Picture;
 use crate::axes::{LogScale, scatter};
 use crate::canvas::{Canvas, Style};
-use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR, column_colour};
+use crate::colours::{FAINT_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::own_columns;
 use crate::figure::{Figure, Table};
 
@@ -170,16 +170,9 @@ fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Canvas {
     );
     canvas.text([0.0, 31.0], &meshes, Style::new(12).colour(FAINT_COLOUR));
     let bottom = HEAD + ROW * panel.lines.len() as f64;
-    for tick in scale.ticks() {
-        let x = scale.place(tick);
-        canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
-        let label = format!("{tick} ×");
-        canvas.text(
-            [x, HEAD - 8.0],
-            &label,
-            Style::new(12).middle().colour(FAINT_COLOUR),
-        );
-    }
+    let label = |tick: f64| format!("{tick} ×");
+    let ends = [HEAD - 4.0, bottom];
+    scale.draw_ticks(&mut canvas, ends, HEAD - 8.0, FAINT_COLOUR, &label);
     for (number, line) in panel.lines.iter().enumerate() {
         draw_line(&mut canvas, line, scale, HEAD + ROW * (number as f64 + 0.5));
     }

@@ -83,7 +83,8 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
         return Some(match is_same {
             true => "By size and kind: the same structures are the fastest for all sizes and kinds of meshes.".into(),
             false => {
-                "By size and kind: no size or kind of meshes has an entirely different answer; the table has the                  structures that share the first place."
+                "By size and kind: the structures with the shortest mean time share the first place for all sizes and \
+                 kinds of meshes."
                     .into()
             }
         });
@@ -96,13 +97,13 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
     ))
 }
 
-/// Returns the answer on the meshes `part` if it has no structure in common with the answer on `all`, such as
-/// `for queries (face-vertex)`. `None` if no mesh has a single fastest structure.
+/// Returns the answer on the meshes `part`, such as `for queries (face-vertex)`, if it is without the structure with the
+/// shortest mean time on `all`. `None` if no mesh has a single fastest structure.
 fn other_answer(all: &Means, part: &Means, purpose: Purpose) -> Option<String> {
     let [usual, best] = [all, part].map(|means| leaders(purpose.rows(&means.overall)));
-    let is_usual = |row: &Overall| usual.iter().any(|other| other.backend == row.backend);
+    let first = usual.first()?;
     let decided = best.iter().any(|row| row.best > 0);
-    let differs = decided && !usual.is_empty() && !best.iter().any(is_usual);
+    let differs = decided && best.iter().all(|row| row.backend != first.backend);
     differs.then(|| format!("{} ({})", purpose.of_choice(), names(best)))
 }
 
