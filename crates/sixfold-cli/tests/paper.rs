@@ -73,7 +73,7 @@ fn a_study_writes_the_files_for_a_paper() {
     let run = run_ok(&sixfold, &narrow);
     // Six columns of numbers are not read in 85 mm, a ranking is.
     assert!(
-        run.stderr.contains("note: heat-map is 163 mm wide"),
+        run.stderr.contains("note: heat-map is 168 mm wide"),
         "{run:?}"
     );
     let ranking = text(&sixfold, "narrow/rankings.svg");

@@ -118,7 +118,14 @@ pub fn not_ranked(rows: &[Overall]) -> Option<String> {
 fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let best = leaders(rows);
     let first = best.first()?;
-    let (next, ratio) = next_best(rows)?;
+    let next = match next_best(rows) {
+        Some((next, ratio)) => format!("; {next} {ratio} the time"),
+        // The means differ, but perhaps not on other meshes.
+        None if first.meshes > 1 && best.iter().any(|row| row.interval_to_first().is_some()) => {
+            String::new()
+        }
+        None => return None,
+    };
     let is_equal = |row: &Overall| row.ratio_to_best <= first.ratio_to_best * EQUAL_UP_TO;
     let names = list(best.iter().map(|row| row.backend.clone()));
     let lead = match best {
@@ -135,7 +142,7 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     };
     let open = not_ranked(rows).map_or(String::new(), |open| format!("; {open}"));
     Some(format!(
-        "{}, {group}: {lead} (geometric mean over {}); {next} {ratio} the time{open}.{only}",
+        "{}, {group}: {lead} (geometric mean over {}){next}{open}.{only}",
         first.purpose.title(),
         counted(first.meshes, "mesh", "meshes"),
     ))
