@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Checks the folder of `--figures`: check_paper.py DIR results.json
 
-Each figure has its four files, and the PDF has the text of the picture (needs `pdftotext`). The rankings, drawn again by
+Each figure has its four files. The PDF has the text of the picture (needs `pdftotext`), and the SVG has the outlines of the same
+letters, each once. The rankings, drawn again by
 crates/report/examples/redraw.py (needs matplotlib), have the numbers of results.json.
 """
 
 import json
 import subprocess
 import sys
+import xml.etree.ElementTree
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -27,7 +29,21 @@ def check_files(folder):
         fonts = subprocess.run(["pdffonts", svg.with_suffix(".pdf")], check=True, capture_output=True, text=True).stdout
         fonts = [line.split()[0] for line in fonts.splitlines()[2:]]
         assert fonts and all("DejaVuSans" in font for font in fonts), f"{svg.stem}.pdf uses {fonts}"
+        check_outlines(svg, text)
     return len(figures)
+
+
+def check_outlines(svg, text_of_pdf):
+    elements = list(xml.etree.ElementTree.parse(svg).iter())
+    tags = [element.tag.rpartition("}")[2] for element in elements]
+    assert "text" not in tags and "use" in tags, svg
+    ids = [element.get("id") for element in elements if element.get("id")]
+    references = {element.get("{http://www.w3.org/1999/xlink}href") for element in elements} - {None}
+    assert len(set(ids)) == len(ids) and references == {f"#{name}" for name in ids}, svg
+    # A text is named by its words, as the whole picture is.
+    texts = [element.get("aria-label") for element in elements[1:] if element.get("aria-label")]
+    letters, expected = (sorted("".join(words.split())) for words in ("".join(texts), text_of_pdf))
+    assert letters == expected, f"{svg} and its PDF have other letters"
 
 
 def check_rankings(folder, document):

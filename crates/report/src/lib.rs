@@ -22,6 +22,7 @@ mod colours;
 mod data;
 mod figure;
 mod figures;
+mod font;
 mod history;
 mod html;
 mod markdown;

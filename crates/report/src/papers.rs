@@ -84,8 +84,9 @@ impl ReportPage {
         paper
     }
 
-    /// Returns the files of each figure for a paper: `ID.svg`, `ID.pdf`, `ID.csv` and `ID.txt`. The PDF file is
-    /// left out if the font of PDF files does not have all letters of the picture.
+    /// Returns the files of each figure for a paper: `ID.svg`, `ID.pdf`, `ID.csv` and `ID.txt`. Letters are outlines in SVG
+    /// files and an embedded font in PDF files. If the font does not have all letters of the picture, then the texts with other
+    /// letters stay text in the SVG file, and the PDF file is left out.
     ///
     /// With a width in millimetres, the panels of a figure are arranged for this width, and the figure is divided into
     /// files that are at most a page high, `ID-1.svg` and so on. No letter is smaller than 7 points: a figure that cannot
@@ -109,7 +110,7 @@ impl ReportPage {
                     1 => id.clone(),
                     _ => format!("{id}-{}", number + 1),
                 };
-                let svg = picture.light_svg(sheet, &figure.caption);
+                let svg = picture.paper_svg(sheet, &figure.caption);
                 paper.files.push(PaperFile::new(format!("{name}.svg"), svg));
                 match picture.pdf(sheet) {
                     Ok(pdf) => paper.files.push(PaperFile::new(format!("{name}.pdf"), pdf)),

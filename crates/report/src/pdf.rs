@@ -1,7 +1,5 @@
 //! Writing pictures as PDF: a file of one page, with the letters of its texts as an embedded font.
 
-mod font;
-
 use std::collections::{BTreeMap, BTreeSet};
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
@@ -10,9 +8,9 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use subsetter::GlyphRemapper;
 use thiserror::Error;
 
-use self::font::{CAP_HEIGHT, Font};
 use crate::canvas::{Anchor, Canvas, DASHES, Paint, Shape, Style};
 use crate::colours::BACKGROUND;
+use crate::font::{CAP_HEIGHT, Font};
 
 /// The picture of a figure cannot be written as a PDF file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -8,7 +8,7 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::canvas::{Canvas, Shape};
 use crate::colours::dark_rules;
-use crate::svg::Words;
+use crate::svg::{Letters, Words};
 use crate::{PdfError, pdf, svg};
 
 /// Space between panels in a file, in pixels.
@@ -75,14 +75,16 @@ impl Picture {
         );
         let sheet = self.whole();
         let words = Some(self.words(description));
-        svg::element(sheet.size, None, &self.placed(&sheet), words, &style)
+        let panels = self.placed(&sheet);
+        svg::element(sheet.size, None, &panels, words, &style, Letters::Text)
     }
 
-    /// Returns a sheet as an SVG file in the colours of the light mode, for paper.
-    pub(crate) fn light_svg(&self, sheet: &Sheet, description: &str) -> String {
+    /// Returns a sheet as an SVG file for paper: in the colours of the light mode, with the outlines of its letters.
+    pub(crate) fn paper_svg(&self, sheet: &Sheet, description: &str) -> String {
         let words = Some(self.words(description));
         let scale = sheet.is_fitted.then_some(sheet.scale);
-        svg::element(sheet.size, scale, &self.placed(sheet), words, "")
+        let panels = self.placed(sheet);
+        svg::element(sheet.size, scale, &panels, words, "", Letters::Outlines)
     }
 
     /// Returns the picture as one sheet, on which a pixel is a point.
@@ -158,7 +160,8 @@ impl Picture {
         html! {
             @for (number, panel) in self.panels.iter().enumerate() {
                 @let words = (number == 0).then(|| self.words(description));
-                (PreEscaped(svg::element(panel.size, None, &[([0.0, 0.0], panel)], words, "")))
+                @let panels = [([0.0, 0.0], panel)];
+                (PreEscaped(svg::element(panel.size, None, &panels, words, "", Letters::Text)))
             }
         }
     }

@@ -1,9 +1,12 @@
 //! Writing pictures as SVG.
 
+mod outlines;
+
 use std::fmt::{self, Display, Formatter, Write};
 
 use maud::Escaper;
 
+use self::outlines::Outlines;
 use crate::canvas::{Anchor, Canvas, DASHES, Paint, Shape, Style};
 use crate::colours::{BACKGROUND, TEXT_COLOUR};
 
@@ -17,6 +20,15 @@ pub(crate) struct Words<'w> {
     pub(crate) description: &'w str,
 }
 
+/// How the letters of an SVG file are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Letters {
+    /// As text in the font of the reader, which can be searched and copied: for pages.
+    Text,
+    /// As outlines, which look the same everywhere: for paper.
+    Outlines,
+}
+
 /// Returns an SVG element of the given size with `panels`, each moved to its place. `style` has the style
 /// rules of the element. With a scale, a pixel of the picture is that many points of paper. Without words, screen readers skip the element.
 pub(crate) fn element(
@@ -25,16 +37,28 @@ pub(crate) fn element(
     panels: &[([f64; 2], &Canvas)],
     words: Option<Words<'_>>,
     style: &str,
+    letters: Letters,
 ) -> String {
+    let mut body = Body {
+        svg: String::new(),
+        outlines: (letters == Letters::Outlines).then(Outlines::new),
+    };
+    for (place, panel) in panels {
+        body.panel(*place, panel);
+    }
     let mut svg = String::new();
     let [across, down] = [width, height].map(|length| Number(length * scale.unwrap_or(1.0)));
     let unit = if scale.is_some() { "pt" } else { "" };
     let [width, height] = [width, height].map(Number);
+    let namespace = match letters {
+        Letters::Text => "",
+        Letters::Outlines => outlines::NAMESPACE,
+    };
     write(
         &mut svg,
         format_args!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}{unit}\" height=\"{down}{unit}\" viewBox=\"0 0 {width} {height}\" \
-             font-family=\"system-ui, sans-serif\" font-size=\"{USUAL_SIZE}\" fill=\"{TEXT_COLOUR}\" "
+            "<svg xmlns=\"http://www.w3.org/2000/svg\"{namespace} width=\"{across}{unit}\" height=\"{down}{unit}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"system-ui, sans-serif\" font-size=\"{USUAL_SIZE}\" fill=\"{TEXT_COLOUR}\" "
         ),
     );
     match words {
@@ -50,97 +74,114 @@ pub(crate) fn element(
         }
     }
     svg += style;
+    if let Some(outlines) = &body.outlines {
+        outlines.write_definitions(&mut svg);
+    }
     write(
         &mut svg,
         format_args!("<rect width=\"100%\" height=\"100%\" fill=\"{BACKGROUND}\"/>"),
     );
-    for (place, panel) in panels {
-        if *place == [0.0, 0.0] {
-            write_shapes(&mut svg, &panel.shapes);
-            continue;
+    svg + &body.svg + "</svg>"
+}
+
+/// The shapes of an SVG element.
+struct Body {
+    svg: String,
+    /// The outlines of the letters; `None` if letters are text.
+    outlines: Option<Outlines>,
+}
+
+impl Body {
+    fn panel(&mut self, place: [f64; 2], panel: &Canvas) {
+        if place == [0.0, 0.0] {
+            return self.shapes(&panel.shapes);
         }
         let [x, y] = place.map(Number);
         write(
-            &mut svg,
+            &mut self.svg,
             format_args!("<g transform=\"translate({x} {y})\">"),
         );
-        write_shapes(&mut svg, &panel.shapes);
-        svg += "</g>";
+        self.shapes(&panel.shapes);
+        self.svg += "</g>";
     }
-    svg + "</svg>"
-}
 
-fn write_shapes(svg: &mut String, shapes: &[Shape]) {
-    for shape in shapes {
-        write_shape(svg, shape);
+    fn shapes(&mut self, shapes: &[Shape]) {
+        for shape in shapes {
+            self.shape(shape);
+        }
     }
-}
 
-fn write_shape(svg: &mut String, shape: &Shape) {
-    match shape {
-        Shape::Rect {
-            corner,
-            size,
-            paint,
-        } => {
-            let ([x, y], [width, height]) = (corner.map(Number), size.map(Number));
-            write(
-                svg,
-                format_args!(
-                    "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {paint}/>"
-                ),
-            );
-        }
-        Shape::Circle {
-            centre,
-            radius,
-            paint,
-        } => {
-            let ([x, y], radius) = (centre.map(Number), Number(*radius));
-            write(
-                svg,
-                format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>"),
-            );
-        }
-        Shape::Path { parts, paint } => {
-            *svg += "<path d=\"";
-            for part in parts {
-                for (number, point) in part.iter().enumerate() {
-                    // Lines follow a start without a letter.
-                    let step = ["M", "L", " "][number.min(2)];
-                    let [x, y] = point.map(Number);
-                    write(svg, format_args!("{step}{x} {y}"));
-                }
-                if matches!(paint, Paint::Fill(_)) {
-                    svg.push('Z');
-                }
+    fn shape(&mut self, shape: &Shape) {
+        let svg = &mut self.svg;
+        match shape {
+            Shape::Rect {
+                corner,
+                size,
+                paint,
+            } => {
+                let ([x, y], [width, height]) = (corner.map(Number), size.map(Number));
+                write(
+                    svg,
+                    format_args!(
+                        "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {paint}/>"
+                    ),
+                );
             }
-            write(svg, format_args!("\" {paint}/>"));
-        }
-        Shape::Squares {
-            corners,
-            size,
-            fill,
-        } => {
-            *svg += "<path d=\"";
-            for [x, y] in corners {
-                // One decimal: there can be many thousands of them.
-                write(svg, format_args!("M{x:.1} {y:.1}h{size}v{size}h-{size}Z"));
+            Shape::Circle {
+                centre,
+                radius,
+                paint,
+            } => {
+                let ([x, y], radius) = (centre.map(Number), Number(*radius));
+                write(
+                    svg,
+                    format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>"),
+                );
             }
-            write(svg, format_args!("\" fill=\"{fill}\"/>"));
-        }
-        Shape::Text { at, text, style } => {
-            let [x, y] = at.map(Number);
-            write(svg, format_args!("<text x=\"{x}\" y=\"{y}\"{style}>"));
-            write_escaped(svg, text);
-            *svg += "</text>";
-        }
-        Shape::Mark { title, shapes } => {
-            *svg += "<g><title>";
-            write_escaped(svg, title);
-            *svg += "</title>";
-            write_shapes(svg, shapes);
-            *svg += "</g>";
+            Shape::Path { parts, paint } => {
+                *svg += "<path d=\"";
+                for part in parts {
+                    for (number, point) in part.iter().enumerate() {
+                        // Lines follow a start without a letter.
+                        let step = ["M", "L", " "][number.min(2)];
+                        let [x, y] = point.map(Number);
+                        write(svg, format_args!("{step}{x} {y}"));
+                    }
+                    if matches!(paint, Paint::Fill(_)) {
+                        svg.push('Z');
+                    }
+                }
+                write(svg, format_args!("\" {paint}/>"));
+            }
+            Shape::Squares {
+                corners,
+                size,
+                fill,
+            } => {
+                *svg += "<path d=\"";
+                for [x, y] in corners {
+                    // One decimal: there can be many thousands of them.
+                    write(svg, format_args!("M{x:.1} {y:.1}h{size}v{size}h-{size}Z"));
+                }
+                write(svg, format_args!("\" fill=\"{fill}\"/>"));
+            }
+            Shape::Text { at, text, style } => {
+                let outlines = self.outlines.as_mut();
+                if outlines.is_some_and(|outlines| outlines.write_text(svg, *at, text, *style)) {
+                    return;
+                }
+                let [x, y] = at.map(Number);
+                write(svg, format_args!("<text x=\"{x}\" y=\"{y}\"{style}>"));
+                write_escaped(svg, text);
+                *svg += "</text>";
+            }
+            Shape::Mark { title, shapes } => {
+                *svg += "<g><title>";
+                write_escaped(svg, title);
+                *svg += "</title>";
+                self.shapes(shapes);
+                self.svg += "</g>";
+            }
         }
     }
 }
@@ -236,7 +277,14 @@ mod tests {
             title: "\"title\"",
             description: "<what>",
         };
-        let svg = element([92.0, 30.5], None, &panels, Some(words), "<style></style>");
+        let svg = element(
+            [92.0, 30.5],
+            None,
+            &panels,
+            Some(words),
+            "<style></style>",
+            Letters::Text,
+        );
         let shapes = "<g><title>&lt;&amp;&gt;</title>\
             <rect x=\"0.33\" y=\"0\" width=\"3\" height=\"4\" fill=\"#ff0080\"/>\
             <path d=\"M5 6L7 8.13\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.5\" stroke-dasharray=\"4 3\"/></g>\
@@ -251,7 +299,7 @@ mod tests {
             <title>&quot;title&quot;</title><desc>&lt;what&gt;</desc><style></style><rect width=\"100%\" height=\"100%\" fill=\"#fdfdfc\"/>";
         let expected = format!("{head}{shapes}<g transform=\"translate(52 0)\">{shapes}</g></svg>");
         assert_eq!(svg, expected);
-        let hidden = element([1.0, 1.0], None, &[], None, "");
+        let hidden = element([1.0, 1.0], None, &[], None, "", Letters::Text);
         assert!(hidden.contains(" aria-hidden=\"true\">"), "{hidden}");
     }
 }

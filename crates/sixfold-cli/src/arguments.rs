@@ -137,9 +137,10 @@ const REPORT_EXAMPLES: &str = "Examples:
   sixfold report results --figures paper            for a paper: SVG, PDF, CSV, LaTeX
 
 Figures: --figures writes four files for each figure: ID.svg, ID.pdf, ID.csv (the data, one row for
-each mark) and ID.txt (the caption). results.tex (with the package booktabs) and results.md have the
-tables, and methods.md states how the results were measured. The folder must be new, empty, or
-written by --figures; sixfold-files.txt lists the files, and old figures are removed.
+each mark) and ID.txt (the caption). Letters are outlines in SVG files and an embedded font in PDF
+files, so both look the same on every machine. results.tex (with the package booktabs) and
+results.md have the tables, and methods.md states how the results were measured. The folder must be
+new, empty, or written by --figures; sixfold-files.txt lists the files, and old figures are removed.
 
 Exit codes: 0 success; 2 wrong usage, a file that is incomplete, has no results or has another
 schema version, or studies that cannot be merged.";

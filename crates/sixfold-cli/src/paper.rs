@@ -1,7 +1,7 @@
 //! The folder of `--figures`, with the files for a paper.
 //!
 //! ```text
-//! DIR/ID.svg, ID.pdf             each figure; no PDF if its font lacks a letter
+//! DIR/ID.svg, ID.pdf             each figure with its letters; no PDF if the font lacks a letter
 //! DIR/ID.csv, ID.txt             the data and the caption of the figure
 //! DIR/results.tex, results.md    tables
 //! DIR/methods.md                 how the results were measured
