@@ -205,6 +205,47 @@ mod tests {
     }
 
     #[test]
+    fn the_points_and_the_name_of_a_curve_have_its_shape() {
+        let scale = |pixels| LogScale {
+            values: [1.0, 100.0],
+            pixels,
+        };
+        let axes = Axes {
+            x: scale([0.0, 100.0]),
+            y: scale([100.0, 0.0]),
+            x_label: "",
+            y_label: "",
+            x_format: &|_| String::new(),
+            y_format: &|_| String::new(),
+        };
+        for shape in PointShape::ALL {
+            let point = |at| CurvePoint {
+                at,
+                title: String::new(),
+                is_sampled: false,
+            };
+            let curve = Curve {
+                name: "name".into(),
+                colour: TEXT_COLOUR,
+                shape,
+                points: vec![point([1.0, 1.0]), point([100.0, 10.0])],
+            };
+            let mut drawn = Canvas::new(200.0, 100.0);
+            axes.draw_curves(&mut drawn, vec![curve]);
+            let mut expected = Canvas::new(200.0, 100.0);
+            expected.polyline(&[[0.0, 100.0], [100.0, 50.0]], TEXT_COLOUR, 1.5);
+            for at in [[0.0, 100.0], [100.0, 50.0]] {
+                expected.mark(String::new(), |canvas| {
+                    canvas.point(shape, at, 3.0, TEXT_COLOUR);
+                });
+            }
+            expected.point(shape, [112.0, 50.0], 3.5, TEXT_COLOUR);
+            expected.text([120.0, 54.0], "name", Style::new(12));
+            assert_eq!(format!("{drawn:?}"), format!("{expected:?}"));
+        }
+    }
+
+    #[test]
     fn a_scale_places_its_ends_and_its_ticks() {
         let scale = LogScale {
             values: [1.0, 1000.0],

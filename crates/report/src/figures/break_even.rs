@@ -9,7 +9,7 @@ use super::INPUT_BACKEND;
 use crate::Picture;
 use crate::axes::{Axes, LogScale, spread};
 use crate::canvas::{Canvas, Style};
-use crate::colours::column_colour;
+use crate::colours::{column_colour, column_shape};
 use crate::data::own_columns;
 use crate::data::rows::BreakEvenRow;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
@@ -499,8 +499,8 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], units: &
     let mut labelled: Vec<[f64; 2]> = Vec::new();
     for (line, count, [x, y]) in points {
         let title = format!("{} pays after {}", line.name, line.pays_after(units));
-        let colour = column_colour(line.name);
-        canvas.mark(title, |canvas| canvas.circle([x, y], 4.5, colour));
+        let (colour, shape) = (column_colour(line.name), column_shape(line.name));
+        canvas.mark(title, |canvas| canvas.point(shape, [x, y], 4.5, colour));
         // Where points are close to each other, the labels at the right say the numbers.
         let is_near = |[other_x, other_y]: &[f64; 2]| {
             (other_x - x).abs() < 60.0 && (other_y - y).abs() < 16.0
@@ -519,7 +519,8 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], units: &
     for ((line, place), label) in lines.iter().zip(places).zip(labels) {
         let right = axes.x.pixels[1];
         let colour = column_colour(line.name);
-        canvas.line([right + 2.0, place], [right + 14.0, label], colour, 1.0);
+        canvas.line([right + 2.0, place], [right + 11.0, label], colour, 1.0);
+        canvas.point(column_shape(line.name), [right + 14.0, label], 3.5, colour);
         let text = match line.pays {
             Pays::Given => format!("{}: given", line.name),
             Pays::Never => format!("{}: never pays", line.name),
@@ -528,6 +529,61 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], units: &
                 format!("{}: pays after {}", line.name, approximate(at))
             }
         };
-        canvas.text([right + 18.0, label + 4.0], &text, Style::new(12));
+        canvas.text([right + 21.0, label + 4.0], &text, Style::new(12));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::{Paint, Shape};
+
+    /// In grey, the shape says which line a point and a name belong to.
+    #[test]
+    fn the_point_and_the_name_of_a_line_have_the_shape_of_its_column() {
+        let scale = |pixels| LogScale {
+            values: [1.0, 1e4],
+            pixels,
+        };
+        let axes = Axes {
+            x: scale([0.0, 400.0]),
+            y: scale([400.0, 0.0]),
+            x_label: "",
+            y_label: "",
+            x_format: &count_tick,
+            y_format: &duration_tick,
+        };
+        let line = |name, at| Line {
+            name,
+            build: 100.0,
+            run: 1.0,
+            interval: None,
+            confidence: Confidence::default(),
+            launches: Vec::new(),
+            pays: Pays::After(Crossing { at, range: None }),
+        };
+        let names = ["half-edge", "relation-tables"];
+        let mut canvas = Canvas::new(700.0, 400.0);
+        let lines = [line(names[0], 30.0), line(names[1], 1000.0)];
+        draw_lines(&mut canvas, &axes, &lines, "runs");
+        let shapes = canvas.shapes.iter().flat_map(|shape| match shape {
+            Shape::Mark { shapes, .. } => &shapes[..],
+            shape => std::slice::from_ref(shape),
+        });
+        let corners = shapes.filter_map(|shape| match shape {
+            Shape::Path {
+                points,
+                paint: Paint::Fill(colour),
+            } => Some((*colour, points.len())),
+            _ => None,
+        });
+        let mut corners: Vec<(&str, usize)> = corners.collect();
+        corners.sort_by_key(|(_, count)| *count);
+        // Triangles and crosses.
+        let expected = [(names[0], 3), (names[0], 3), (names[1], 12), (names[1], 12)];
+        assert_eq!(
+            corners,
+            expected.map(|(name, count)| (column_colour(name), count))
+        );
     }
 }

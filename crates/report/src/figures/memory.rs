@@ -25,7 +25,6 @@ struct Part {
     name: String,
     rows: usize,
     bytes: usize,
-    colour: &'static str,
 }
 
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
@@ -84,22 +83,20 @@ fn total(column: &BackendReport) -> usize {
     column.tables.iter().map(|table| table.bytes).sum()
 }
 
-/// Returns the tables of a structure. Positions come first, in the same colour for all structures.
+/// Returns the tables of a structure. Positions come first.
 fn parts(column: &BackendReport) -> Vec<Part> {
     let mut tables: Vec<_> = column.tables.iter().collect();
     tables.sort_by_key(|part| part.table != POSITIONS);
-    let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));
-    let tables = tables.into_iter().enumerate();
-    let parts = tables.map(|(number, table)| Part {
+    let parts = tables.into_iter().map(|table| Part {
         name: table.table.to_string(),
         rows: table.rows,
         bytes: table.bytes,
-        colour: table_colour(first + number),
     });
     parts.collect()
 }
 
-/// Draws the parts of a bar. `y` is the upper end of the bar, and `scale` the pixels of a byte.
+/// Draws the parts of a bar, those that touch in colours that follow one another, and positions in the same colour for all
+/// structures. `y` is the upper end of the bar, and `scale` the pixels of a byte.
 /// Returns the end of the bar.
 fn draw_parts(
     canvas: &mut Canvas,
@@ -109,12 +106,14 @@ fn draw_parts(
     vertices: usize,
 ) -> f64 {
     let mut x = NAMES;
-    for part in parts.iter().filter(|part| part.bytes > 0) {
+    let first = usize::from(parts.first().is_none_or(|part| part.name != POSITIONS));
+    let drawn = parts.iter().filter(|part| part.bytes > 0);
+    for (part, number) in drawn.zip(first..) {
         let width = part.bytes as f64 * scale;
         let each = part.bytes as f64 / vertices as f64;
         let title = format!("{structure}, {}: {each:.1} bytes per vertex", part.name);
         canvas.mark(title, |canvas| {
-            canvas.rect([x, y], [width, BAR], part.colour)
+            canvas.rect([x, y], [width, BAR], table_colour(number))
         });
         if text_width(&part.name, 11) + 8.0 < width {
             let inside = Style::new(11).colour(BACKGROUND);
@@ -140,4 +139,44 @@ fn formula(parts: &[Part]) -> String {
         _ => format!("{} {}", part.name, grouped(part.bytes)),
     });
     terms.collect::<Vec<_>>().join(" + ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::{Paint, Shape};
+    use crate::colours::contrast;
+
+    #[test]
+    fn parts_that_touch_differ_in_grey() {
+        let part = |name: &str, bytes| Part {
+            name: name.into(),
+            rows: 1,
+            bytes,
+        };
+        // Positions have the first colour; a bar without them begins with the second.
+        for first in [POSITIONS, "corners"] {
+            let parts = [part(first, 1), part("a", 1), part("empty", 0), part("b", 1)];
+            let mut canvas = Canvas::new(WIDTH, ROW);
+            draw_parts(&mut canvas, "soup", &parts, [0.0, 9.0], 1);
+            let marks = canvas.shapes.iter().filter_map(|shape| match shape {
+                Shape::Mark { shapes, .. } => shapes.first(),
+                _ => None,
+            });
+            let colours: Vec<&str> = marks
+                .map(|shape| match shape {
+                    Shape::Rect {
+                        paint: Paint::Fill(colour),
+                        ..
+                    } => *colour,
+                    other => panic!("{other:?}"),
+                })
+                .collect();
+            assert_eq!(colours.len(), 3);
+            assert_eq!(colours[0] == table_colour(0), first == POSITIONS);
+            for pair in colours.windows(2) {
+                assert!(contrast(pair[0], pair[1]) >= 1.25, "{colours:?}");
+            }
+        }
+    }
 }
