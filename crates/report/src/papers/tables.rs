@@ -3,12 +3,11 @@
 use std::fmt::Write as _;
 
 use sixfold_results::numbers::{counted, duration, figure as shown, grouped, list, rounded_down};
-use sixfold_results::{
-    Confidence, OperationInfo, Pool, Pooled, Report, ResultRow, Results, Standing,
-};
+use sixfold_results::{OperationInfo, Pool, Report, ResultRow, Results, Standing};
 
 use crate::figures::facts;
 use crate::markdown::escape;
+use crate::matrix::{self, Line, Matrix};
 
 /// The largest number of meshes that have a table of their own.
 const MAX_MESH_TABLES: usize = 8;
@@ -115,7 +114,7 @@ pub(super) fn tables(results: &Results) -> Vec<PaperTable> {
     let studies: Vec<&Report> = results.studies().collect();
     let mut tables = Vec::new();
     if studies.len() > 1 {
-        tables.push(means(&results.pool(), studies[0].run.settings.confidence));
+        tables.push(means(&results.pool(), &studies));
     }
     if studies.len() <= MAX_MESH_TABLES {
         let numbered = studies.iter().enumerate();
@@ -277,48 +276,57 @@ fn meshes(studies: &[&Report]) -> PaperTable {
     }
 }
 
-fn means(pool: &Pool, confidence: Confidence) -> PaperTable {
+/// Returns the table of the means over the meshes, whose marks are those of the page.
+fn means(pool: &Pool, studies: &[&Report]) -> PaperTable {
     let columns = pool.compared.clone();
-    let row = |rows: &[Pooled]| {
-        let measured = rows.iter().filter(|row| row.estimated == 0);
-        let smallest = measured.min_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
-        let cell = |column: &String| {
-            let row = rows.iter().find(|row| row.backend == *column)?;
-            let interval = row.ci_low.zip(row.ci_high).map(|(a, b)| [a, b]);
-            Some(match row.estimated {
-                0 => Cell::ratio(row.ratio_to_best, interval, kind_of_mean(row, smallest?)),
-                _ => Cell::bound(row.ratio_to_best),
-            })
-        };
-        let cells = columns.iter().map(cell).collect();
-        PaperRow::new(&rows[0].operation, cells)
+    let matrix = Matrix::of_pool(pool, studies);
+    let row = |line: &Line| {
+        let measured = line.cells.iter().filter(|cell| !cell.is_bound());
+        let measured: Vec<_> = measured.filter(|cell| cell.ratio.is_some()).collect();
+        let cell = |column: &String| mean(line.cells.iter().find(|cell| cell.backend == *column)?);
+        PaperRow {
+            provisional: measured.len() > 1 && measured.iter().all(|cell| cell.standing.is_none()),
+            ..PaperRow::new(&line.name, columns.iter().map(cell).collect())
+        }
     };
+    // In the order of the tables of the meshes.
+    let operations = pool.all().chunk_by(|a, b| a.operation == b.operation);
+    let line_of = |operation: &str| matrix.lines.iter().find(|line| line.name == operation);
+    let lines = operations.filter_map(|rows| line_of(&rows[0].operation));
+    let rows = with_cells(lines.map(row));
     let meshes = pool.groups.first().map_or(0, |all| all.meshes.len());
+    let provisional = match rows.iter().any(|row| row.provisional) {
+        true => " †: too few meshes to name the smallest mean.",
+        false => "",
+    };
     PaperTable {
         label: "means".into(),
         caption: format!(
             "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh, with \
              {confidence} intervals in brackets. Each power of ten of the number of faces has the same weight. Bold: the \
-             smallest mean, if it is the fastest on every mesh. Italic: the smallest mean otherwise, and means of backends \
-             that are fastest or share the first place on some meshes. ≥: lower bound, because a run on a mesh would exceed the budget. –: not measured.",
-            counted(meshes, "mesh", "meshes")
+             smallest mean, if every other backend is slower beyond chance: the {confidence} interval of the mean quotient of \
+             both times is above 1. Italic: undecided, perhaps the smallest mean. ≥: lower bound, because a run on a mesh would exceed the budget. \
+             –: not measured.{provisional}",
+            counted(meshes, "mesh", "meshes"),
+            confidence = matrix.confidence
         ),
-        rows: with_cells(
-            pool.all()
-                .chunk_by(|a, b| a.operation == b.operation)
-                .map(row),
-        ),
+        rows,
         columns,
     }
 }
 
-/// Returns what a mean is. Nothing is decided by the smallest mean if another backend is the fastest on some mesh.
-fn kind_of_mean(row: &Pooled, smallest: &Pooled) -> Kind {
-    match (row.best, row.tied) {
-        (best, _) if best == row.meshes => Kind::Best,
-        (0, 0) if row.backend != smallest.backend => Kind::Plain,
-        _ => Kind::Undecided,
-    }
+/// Returns the cell of a mean.
+fn mean(cell: &matrix::Cell) -> Option<Cell> {
+    let ratio = cell.ratio?;
+    let kind = match cell.standing {
+        Some(Standing::Undecided) => Kind::Undecided,
+        _ if cell.is_best() => Kind::Best,
+        _ => Kind::Plain,
+    };
+    Some(match cell.is_bound() {
+        true => Cell::bound(ratio),
+        false => Cell::ratio(ratio, cell.interval, kind),
+    })
 }
 
 /// Returns a table with a row for each ranking of a workload.
@@ -331,16 +339,18 @@ fn of_workloads(results: &Results) -> PaperTable {
     }
     let rows = results.picks().map(|pick| {
         let meshes: Vec<&str> = pick.meshes.iter().map(|mesh| mesh.name.as_str()).collect();
+        let tied = pick.ranking.iter().filter(|ranked| ranked.tied_with_best);
+        let tied = tied.count();
         let cell = |column: &String| {
             let ranked = pick
                 .ranking
                 .iter()
                 .find(|ranked| ranked.backend == *column)?;
             let interval = ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]);
-            let shared = pick.ranking.iter().any(|ranked| ranked.tied_with_best);
-            let kind = match ranked.ratio_to_best == 1.0 {
-                _ if ranked.tied_with_best => Kind::Undecided,
-                true if shared => Kind::Undecided,
+            let kind = match ranked.tied_with_best {
+                _ if pick.preliminary => Kind::Plain,
+                // The fastest is tied with itself.
+                true if tied > 1 => Kind::Undecided,
                 true => Kind::Best,
                 false => Kind::Plain,
             };

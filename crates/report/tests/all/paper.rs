@@ -1,6 +1,8 @@
 //! Tests the files for a paper: their data are those of the results, and their texts are true for them.
 
+use std::fs;
 use std::num::NonZeroU32;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
@@ -226,6 +228,192 @@ fn several_meshes_have_a_table_of_means() {
     }
     let single = paper(&results(&["a.obj"]));
     assert!(!text(&single, "results.tex").contains("tab:sixfold-means"));
+}
+
+/// Returns the lines of the table with `label` in `results.tex`.
+fn tex_table<'t>(tex: &'t str, label: &str) -> Vec<&'t str> {
+    let start = tex.find(&format!("\\label{{tab:sixfold-{label}}}"));
+    let table = &tex[start.unwrap_or_else(|| panic!("no table {label}: {tex}"))..];
+    let end = table.find("\\bottomrule").expect("an end");
+    table[..end].lines().collect()
+}
+
+/// Returns the line of an operation in a table.
+fn line_of<'t>(lines: &[&'t str], operation: &str) -> &'t str {
+    let name = operation.replace('_', "\\_");
+    let line = lines.iter().find(|line| line.starts_with(&name));
+    line.unwrap_or_else(|| panic!("no line {name}: {lines:?}"))
+}
+
+#[test]
+fn undecided_times_are_italic_and_nothing_in_their_row_is_bold() {
+    let mut study = known_study("a.obj");
+    for row in &mut study.results {
+        if row.operation == "build" && ["half-edge", "winged-edge"].contains(&&*row.backend) {
+            row.standing = Some(Standing::Undecided);
+        }
+    }
+    let mut all = Results::default();
+    all.add(study.into());
+    let files = paper(&all);
+    let tex = text(&files, "results.tex");
+    let table = tex_table(tex, "mesh-1");
+    let build = line_of(&table, "build");
+    assert_eq!(build.matches("\\textit{").count(), 2, "{build}");
+    assert!(!build.contains("\\textbf"), "{build}");
+    let decided = line_of(&table, "vertex_normal");
+    assert!(decided.contains("\\textbf{1.00}"), "{decided}");
+    assert!(!decided.contains("\\textit"), "{decided}");
+    assert!(!tex.contains("dagger"), "{tex}");
+}
+
+#[test]
+fn a_row_with_too_few_samples_has_its_mark_and_nothing_bold() {
+    let mut study = known_study("a.obj");
+    for row in &mut study.results {
+        if row.operation == "build" {
+            row.standing = None;
+            row.samples = 2;
+        }
+    }
+    let mut all = Results::default();
+    all.add(study.into());
+    let files = paper(&all);
+    let tex = text(&files, "results.tex");
+    let build = line_of(&tex_table(tex, "mesh-1"), "build");
+    assert!(build.starts_with("build\\,$^\\dagger$ & "), "{build}");
+    assert!(
+        !build.contains("\\textbf") && !build.contains("\\textit"),
+        "{build}"
+    );
+    let other = line_of(&tex_table(tex, "mesh-1"), "vertex_normal");
+    assert!(
+        !other.contains("dagger") && other.contains("\\textbf{1.00}"),
+        "{other}"
+    );
+    assert!(
+        tex.contains("$^\\dagger$: too few samples to name the fastest."),
+        "{tex}"
+    );
+    let markdown = text(&files, "results.md");
+    assert!(markdown.contains("| build † | "), "{markdown}");
+    assert!(
+        markdown.contains(" †: too few samples to name the fastest."),
+        "{markdown}"
+    );
+}
+
+/// Returns studies of meshes on which half-edge is the fastest. Face-vertex takes `twice` or `uneven` times as long, by
+/// mesh; the others take 40 times as long.
+fn studies_with_known_means(count: usize) -> Results {
+    let mut all = Results::default();
+    // Fastest on every mesh, but the mean of the quotient can be 1 by chance.
+    let uneven = [1.02, 1.02, 9.0, 1.02];
+    for (number, uneven) in uneven.into_iter().enumerate().take(count) {
+        let mut study = report(&format!("{number}.obj"));
+        study.samples.clear();
+        for row in &mut study.results {
+            let ratio = match (row.backend.as_str(), row.operation.as_str()) {
+                ("half-edge", _) => 1.0,
+                ("face-vertex", "build") => 2.0,
+                ("face-vertex", _) => uneven,
+                _ => 40.0,
+            };
+            row.standing = Some(if ratio == 1.0 {
+                Standing::Best
+            } else {
+                Standing::Slower
+            });
+            row.ratio_to_best = Some(ratio);
+            row.median_ns = Some(100.0 * ratio);
+            row.ns_per_element = Some(ratio);
+        }
+        all.add(study.into());
+    }
+    all
+}
+
+#[test]
+fn means_have_the_marks_of_the_page() {
+    let all = studies_with_known_means(4);
+    let files = paper(&all);
+    let [tex, markdown] = ["results.tex", "results.md"].map(|name| text(&files, name));
+    let lines = tex_table(tex, "means");
+    let [build, normals] = ["build", "vertex_normal"].map(|name| line_of(&lines, name));
+    assert_eq!(build.matches("\\textbf{1.00}").count(), 1, "{build}");
+    assert!(!build.contains("\\textit"), "{build}");
+    assert_eq!(normals.matches("\\textit{").count(), 2, "{normals}");
+    assert!(!normals.contains("\\textbf"), "{normals}");
+    assert!(!tex.contains("dagger"), "{tex}");
+
+    let page = ReportPage::new(&all, "sixfold study");
+    let figure = page.all_figures().find(|figure| figure.id == "heat-map");
+    let shown = &figure.expect("the heat map of the means").table;
+    let table = markdown.split("\n\n").find(|part| part.starts_with("|  |"));
+    let mut rows = table.expect("the means").lines();
+    let cells = |line: &str| -> Vec<String> { line.split(" | ").map(str::to_owned).collect() };
+    let header = cells(rows.next().expect("a header").trim_end_matches(" |"));
+    let mut checked = 0;
+    for line in rows.skip(1).map(|line| cells(line.trim_end_matches(" |"))) {
+        let name = line[0].trim_start_matches("| ").replace("\\_", "_");
+        let row = shown.rows.iter().find(|row| row[0] == name);
+        let row = row.unwrap_or_else(|| panic!("no row {name}"));
+        for (backend, cell) in header.iter().zip(&line).skip(1) {
+            let place = shown.header.iter().position(|column| column == backend);
+            let on_page = &row[place.expect("a column")];
+            assert_eq!(
+                on_page.starts_with('●'),
+                cell.starts_with("**"),
+                "{on_page} {cell}"
+            );
+            let is_italic = cell.starts_with('*') && !cell.starts_with("**");
+            assert_eq!(on_page.starts_with('◐'), is_italic, "{on_page} {cell}");
+            checked += 1;
+        }
+    }
+    assert_eq!(checked, 12);
+}
+
+#[test]
+fn means_over_two_meshes_are_provisional() {
+    let files = paper(&studies_with_known_means(2));
+    let tex = text(&files, "results.tex");
+    let lines = tex_table(tex, "means");
+    for operation in ["build", "vertex_normal"] {
+        let line = line_of(&lines, operation);
+        assert!(line.contains("$^\\dagger$ & "), "{line}");
+        assert!(
+            !line.contains("\\textbf") && !line.contains("\\textit"),
+            "{line}"
+        );
+    }
+    assert!(
+        tex.contains("$^\\dagger$: too few meshes to name the smallest mean."),
+        "{tex}"
+    );
+}
+
+/// On the built-in mesh, one backend is the fastest in decimation, and two share the first place in remeshing.
+#[test]
+fn rankings_of_workloads_are_bold_if_they_are_decided() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reports/workloads");
+    for (name, expected) in [("decimation", [1, 0, 0]), ("remeshing", [0, 2, 0])] {
+        let file = folder.join(format!("built-in-{name}.json"));
+        let document = fs::read_to_string(file).expect("data");
+        let mut all = Results::read_json(&document).expect("a document");
+        let marks = |all: &Results| {
+            let files = paper(all);
+            let rows = tex_table(text(&files, "results.tex"), "workloads").concat();
+            ["\\textbf{", "\\textit{", "dagger"].map(|mark| rows.matches(mark).count())
+        };
+        assert_eq!(marks(&all), expected, "{name}");
+        for finding in &mut all.findings {
+            if let Finding::Pick(pick) = finding {
+                pick.preliminary = true;
+            }
+        }
+        assert_eq!(marks(&all), [0, 0, 1], "{name}");
+    }
 }
 
 fn methods(results: &Results) -> String {
