@@ -239,8 +239,8 @@ mod tests {
                     canvas.point(shape, at, 3.0, TEXT_COLOUR);
                 });
             }
-            expected.point(shape, [112.0, 50.0], 3.5, TEXT_COLOUR);
-            expected.text([120.0, 54.0], "name", Style::new(12));
+            expected.point(shape, [110.0, 50.0], 3.5, TEXT_COLOUR);
+            expected.text([118.0, 54.0], "name", Style::new(12));
             assert_eq!(format!("{drawn:?}"), format!("{expected:?}"));
         }
     }

@@ -2,8 +2,9 @@
 
 use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_results::{
-    Confidence, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Overall, Pool, Pooled, Purpose,
-    Quotient, RefusalKind, Report, ResultRow, Samples, Standing, mean_quotients, operations,
+    Confidence, FEWEST_MESHES, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Overall, Pool,
+    Pooled, Purpose, Quotient, RefusalKind, Report, ResultRow, Samples, Standing, mean_quotients,
+    operations,
 };
 
 use crate::figure::Table;
@@ -30,7 +31,8 @@ pub(crate) struct Cell {
     pub(crate) source: Source,
     /// The time divided by that of the fastest backend; a lower bound if `source` is a bound.
     pub(crate) ratio: Option<f64>,
-    /// The interval of `ratio`; `None` for the fastest, whose ratio is 1 by definition.
+    /// The interval of `ratio`, or its range over the meshes if they are too few for an interval; `None` for the fastest,
+    /// whose ratio is 1 by definition.
     pub(crate) interval: Option<[f64; 2]>,
     /// Time per element in nanoseconds.
     pub(crate) ns: Option<f64>,
@@ -73,6 +75,20 @@ pub(crate) struct Matrix {
     pub(crate) lines: Vec<Line>,
     /// The confidence of all intervals.
     pub(crate) confidence: Confidence,
+    /// The number of meshes.
+    pub(crate) meshes: usize,
+}
+
+/// Says which ends are shown with the ratios of so many meshes.
+pub(crate) fn ends_of_ratios(meshes: usize, confidence: Confidence) -> String {
+    match meshes {
+        0 | 1 => format!("its {confidence} interval where there are enough samples"),
+        count if count < FEWEST_MESHES => "the least and the largest on a mesh".into(),
+        _ => format!(
+            "the {confidence} interval of other meshes like these (with times on fewer than {FEWEST_MESHES}: the least and \
+             the largest)"
+        ),
+    }
 }
 
 impl Cell {
@@ -223,6 +239,19 @@ impl Cell {
         }
     }
 
+    /// Returns the cell with the range of its ratios on the meshes, if a mean has no interval.
+    fn with_range(mut self) -> Self {
+        let each = self.each.iter().copied();
+        if self.interval.is_none() && self.each.len() > 1 && !self.is_bound() {
+            let ends = [
+                each.clone().fold(f64::INFINITY, f64::min),
+                each.fold(0.0, f64::max),
+            ];
+            self.interval = Some(ends);
+        }
+        self
+    }
+
     fn of_pool(row: &Pooled) -> Self {
         let source = match row.estimated {
             0 => Source::Measured,
@@ -230,7 +259,7 @@ impl Cell {
         };
         Self {
             ratio: Some(row.ratio_to_best),
-            interval: row.ci_low.zip(row.ci_high).map(|(low, high)| [low, high]),
+            interval: row.ci_low.zip(row.ci_high).map(Into::into),
             ns: row.ns_per_element,
             remark: Some(format!(
                 "mean over {} meshes: single fastest on {}, shared first place on {}, not run on {}",
@@ -320,11 +349,15 @@ impl Matrix {
             lines: lines.collect(),
             backends,
             confidence: study.run.settings.confidence,
+            meshes: 1,
         }
     }
 
-    /// Returns the means over the meshes of `pool`, which are those of `studies`.
+    /// Returns the means over the meshes of `pool`, of which `studies` may have more.
     pub(crate) fn of_pool(pool: &Pool, studies: &[&Report]) -> Self {
+        let meshes = pool.groups.first().map_or(&[][..], |all| &all.meshes);
+        let studies = studies.iter().filter(|s| meshes.contains(&s.mesh.name));
+        let studies = &studies.copied().collect::<Vec<&Report>>()[..];
         let mut backends: Vec<String> = Vec::new();
         for row in pool.all() {
             if !backends.contains(&row.backend) {
@@ -347,7 +380,8 @@ impl Matrix {
                     each: ratios(studies, operation, name),
                     quotients,
                     ..Cell::of_pool(row)
-                },
+                }
+                .with_range(),
                 None => Cell::new(name, without_time(studies, operation, name)),
             };
             let mut cells: Vec<Cell> = backends.iter().zip(quotients).map(cell).collect();
@@ -360,6 +394,7 @@ impl Matrix {
             confidence: studies
                 .first()
                 .map_or_else(Confidence::default, |study| study.run.settings.confidence),
+            meshes: meshes.len(),
         }
     }
 }
@@ -377,23 +412,21 @@ fn without_time(studies: &[&Report], operation: &str, backend: &str) -> Source {
     }
 }
 
-/// Sets which means are the smallest: one alone if the intervals of its quotients with the others exclude 1, otherwise all
-/// whose interval contains 1. Without intervals, nothing is set.
+/// Sets which means are the smallest: one alone if its quotients with the others are [decided](Quotient::is_undecided),
+/// otherwise all whose quotient is not. Without intervals and ranges, nothing is set.
 fn set_standings(cells: &mut [Cell]) {
     let ratio = |cell: &Cell| cell.ratio.filter(|_| !cell.is_bound());
     let measured = (0..cells.len()).filter_map(|place| Some((place, ratio(&cells[place])?)));
     let least = measured.min_by(|a, b| a.1.total_cmp(&b.1));
     let Some((first, _)) = least else { return };
-    let interval = |cell: &Cell| cell.quotients.get(first)?.as_ref()?.interval;
     let others = (0..cells.len()).filter(|&place| place != first && ratio(&cells[place]).is_some());
-    let others: Vec<(usize, Option<[f64; 2]>)> = others
-        .map(|place| (place, interval(&cells[place])))
-        .collect();
-    if others.is_empty() || others.iter().any(|(_, ends)| ends.is_none()) {
+    let is_open = |place: usize| cells[place].quotients.get(first)?.as_ref()?.is_undecided();
+    let others: Option<Vec<(usize, bool)>> =
+        others.map(|place| Some((place, is_open(place)?))).collect();
+    let Some(others) = others.filter(|others| !others.is_empty()) else {
         return;
-    }
-    let is_open = |ends: &Option<[f64; 2]>| ends.is_some_and(|[low, _]| low <= 1.0);
-    let open = others.into_iter().filter(|(_, ends)| is_open(ends));
+    };
+    let open = others.into_iter().filter(|(_, is_open)| *is_open);
     let open: Vec<usize> = open.map(|(place, _)| place).collect();
     cells[first].standing = Some(match open.is_empty() {
         true => Standing::Best,

@@ -16,10 +16,8 @@ pub(crate) fn line(findings: &[&Finding]) -> String {
             Some(match settings.rounds {
                 Some(_) => settings.effort_text(),
                 // A part of the --budget, if the command measures more.
-                None if findings.len() > 1 => {
-                    format!("measured for {} each", settings.effort_text())
-                }
-                None => format!("measured for {}", settings.effort_text()),
+                None if findings.len() > 1 => format!("at most {} each", settings.effort_text()),
+                None => format!("at most {}", settings.effort_text()),
             })
         }),
         dates(findings),

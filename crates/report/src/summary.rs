@@ -3,7 +3,7 @@
 
 use crate::figure::Table;
 use crate::figures::break_even;
-use crate::matrix::likely_first;
+use crate::matrix::{ends_of_ratios, likely_first};
 use sixfold_results::launches::FEWEST_LAUNCHES;
 use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
@@ -19,6 +19,8 @@ pub struct Summary {
     pub columns: Vec<SummaryColumn>,
     /// The rows.
     pub rows: Vec<SummaryRow>,
+    /// What the ends of the ratios are, such as `its 95 % interval`.
+    pub ends: String,
 }
 
 /// A column of a [`Summary`].
@@ -130,6 +132,8 @@ struct Work<'s> {
     is_decided: &'s dyn Fn(Purpose) -> bool,
     /// What the means of a purpose are over.
     over: &'s dyn Fn(&[Overall]) -> String,
+    /// What the ends of the ratios are.
+    ends: String,
 }
 
 /// What the first screen says about the memory of each backend.
@@ -188,6 +192,7 @@ impl Summary {
                 Purpose::Query => work_of_mean(study, rows, "queries and passes"),
                 _ => work_of_mean(study, rows, "edits"),
             },
+            ends: ends_of_ratios(1, study.run.settings.confidence),
         };
         Self::new(&backends, &work, &memory, orders)
     }
@@ -204,6 +209,7 @@ impl Summary {
             .iter()
             .filter(|study| all.meshes.contains(&study.mesh.name));
         let studies: Vec<&Report> = studies.copied().collect();
+        let confidence = studies.first()?.run.settings.confidence;
         let of = |name: &String| Memory::of(name, &studies);
         let memory: Vec<Memory> = pool.compared.iter().filter_map(of).collect();
         let work = Work {
@@ -215,6 +221,7 @@ impl Summary {
                     .any(|row| row.undecided < row.meshes)
             },
             over: &|rows| format!("mean over {}", counted(rows[0].meshes, "mesh", "meshes")),
+            ends: ends_of_ratios(all.meshes.len(), confidence),
         };
         Some(Self::new(&backends, &work, &memory, None))
     }
@@ -229,6 +236,7 @@ impl Summary {
         likely_first(&mut backends, &work.overall, |(name, _)| name);
         let mut summary = Self {
             columns: Vec::new(),
+            ends: work.ends.clone(),
             rows: backends
                 .iter()
                 .map(|(backend, refusal)| SummaryRow {
@@ -325,7 +333,7 @@ fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<Summary
         false => Rank::Other,
     };
     let ratio = row.ratio_to_best / rows[0].ratio_to_best;
-    let interval = row.interval_to_first().filter(|_| !row.bound);
+    let interval = row.ends_to_first().filter(|_| !row.bound);
     let text = row.times(&rows[0]);
     Some(SummaryFigure::ratio(ratio, interval, rank, text))
 }
@@ -500,16 +508,15 @@ fn fastest(
         };
         let next = next_best(rows).map_or(String::new(), |(next, ratio)| {
             let row = &rows[best.len()];
-            let interval = row.interval_to_first().map(|ends| ends.map(figure));
+            let interval = row.ends_to_first().map(|ends| ends.map(figure));
             let interval = interval.filter(|[low, high]| low != high);
-            // Over several meshes, the interval is that of other meshes like these.
-            let of_others = if row.meshes > 1 {
-                "on other such meshes "
-            } else {
-                ""
+            let of_which = match (row.meshes, row.interval_to_first()) {
+                (1, _) => "",
+                (_, Some(_)) => " on other such meshes",
+                (_, None) => " on the meshes",
             };
             let interval = interval.map_or(String::new(), |[low, high]| {
-                format!(" ({of_others}{low} to {high})")
+                format!(" ({low} to {high}{of_which})")
             });
             format!("; {next} {ratio}{interval}")
         });

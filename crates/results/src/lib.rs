@@ -74,7 +74,8 @@ pub use json::write_json;
 pub use merge::MergeError;
 pub use operation::{OperationGroup, OperationInfo, Purpose};
 pub use pool::{
-    Group, Holding, Overall, Pool, Pooled, leaders, next_best, not_ranked, operations, overall,
+    FEWEST_MESHES, Group, Holding, Overall, Pool, Pooled, leaders, next_best, not_ranked,
+    operations, overall,
 };
 pub use quotient::{Quotient, mean_quotients};
 pub use read::ReadError;

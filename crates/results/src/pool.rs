@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::findings::study::Report;
 use crate::operation::Purpose;
 use means::pooled;
+pub use means::{FEWEST_MESHES, operations, overall};
 pub(crate) use means::{confidence, half_width, mean_over_sizes, with_errors};
-pub use means::{operations, overall};
 use sentences::warnings;
 pub use sentences::{leaders, next_best, not_ranked};
 
@@ -82,8 +82,7 @@ pub struct Overall {
     /// mean over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
     /// 9,999 faces) has the same weight in the mean.
     pub ratio_to_best: f64,
-    /// Lower end of the confidence interval of `ratio_to_best`; `None` with fewer than three
-    /// meshes.
+    /// Lower end of the confidence interval of `ratio_to_best`; `None` with fewer than six meshes.
     pub ci_low: Option<f64>,
     /// Upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
@@ -107,6 +106,9 @@ pub struct Overall {
     /// without the intervals of the single times.
     #[serde(skip)]
     pub(crate) to_first: Option<[f64; 2]>,
+    /// The least and the largest of these quotients on a mesh; `None` on one mesh.
+    #[serde(skip)]
+    pub(crate) range_to_first: Option<[f64; 2]>,
 }
 
 /// The results of one operation on one backend, over several meshes.
@@ -129,7 +131,7 @@ pub struct Pooled {
     /// mean over the meshes. Each range of mesh sizes has the same weight, as in [`Overall`].
     pub ratio_to_best: f64,
     /// Lower end of the confidence interval of `ratio_to_best`, at least 1; `None` with fewer
-    /// than three meshes, or if the mean is a lower bound.
+    /// than six meshes, or if the mean is a lower bound.
     pub ci_low: Option<f64>,
     /// Upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
@@ -278,10 +280,22 @@ impl Purpose {
 
 impl Overall {
     /// Returns the confidence interval of the mean time divided by that of the backend that is fastest on average.
-    /// `None` for this backend, for lower bounds, on several meshes if they are fewer than three, and on one mesh if a
+    /// `None` for this backend, for lower bounds, on several meshes if they are fewer than six, and on one mesh if a
     /// time has no interval.
     pub fn interval_to_first(&self) -> Option<[f64; 2]> {
         self.to_first
+    }
+
+    /// Returns the ends that the mean is shown with: of its interval, or of its range if the meshes are too few for an
+    /// interval.
+    pub fn ends_to_first(&self) -> Option<[f64; 2]> {
+        self.to_first.or(self.range_to_first)
+    }
+
+    /// Returns the least and the largest mean time of a mesh, divided by that of the backend that is fastest on average.
+    /// `None` for this backend, for lower bounds, and on one mesh.
+    pub fn range_to_first(&self) -> Option<[f64; 2]> {
+        self.range_to_first
     }
 
     /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a

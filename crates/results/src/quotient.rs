@@ -1,5 +1,6 @@
 //! Ratios of the times of two backends: each backend can be the baseline of the others.
 
+use crate::findings::pick::EQUAL_UP_TO;
 use crate::findings::study::Report;
 use crate::launches::ratio_over_launches;
 use crate::numbers::shown_ratio;
@@ -15,10 +16,45 @@ pub struct Quotient {
     /// The quotient of the times; over several meshes, the geometric mean.
     pub ratio: f64,
     /// The interval of `ratio`: on one mesh, of the ratios within launches, or within the rounds of the only
-    /// launch; else of the mean over the meshes. `None` with fewer than two launches, or three samples or meshes.
+    /// launch; else of the mean over the meshes. `None` with fewer than two launches, three samples or six meshes.
     pub interval: Option<[f64; 2]>,
+    /// The least and the largest ratio on a mesh, if there are several meshes.
+    pub range: Option<[f64; 2]>,
     /// The number of meshes.
     pub meshes: usize,
+}
+
+impl Quotient {
+    /// Returns the ends that a mean over meshes is shown with: of its interval, or of its range if the meshes are too few
+    /// for an interval.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        self.interval.or(self.range)
+    }
+
+    /// Returns whether the times, of which the first is longer, may be equally long; `None` if this is unknown.
+    pub fn is_undecided(&self) -> Option<bool> {
+        is_undecided(self.interval, self.range)
+    }
+}
+
+/// Returns whether a mean ratio above 1 leaves open which time is shorter: its interval contains 1. If the meshes are too
+/// few for an interval, the times are equal on at least one of them: up to 5 %. `None` without both.
+pub(crate) fn is_undecided(interval: Option<[f64; 2]>, range: Option<[f64; 2]>) -> Option<bool> {
+    match (interval, range) {
+        (Some([low, _]), _) => Some(low <= 1.0),
+        (None, Some([least, _])) => Some(least <= EQUAL_UP_TO),
+        (None, None) => None,
+    }
+}
+
+/// Returns the least and the largest of the values of several meshes.
+pub(crate) fn range(values: impl Iterator<Item = f64> + Clone) -> Option<[f64; 2]> {
+    let several = values.clone().nth(1).is_some();
+    several.then(|| {
+        values.fold([f64::INFINITY, 0.0], |[least, most], value| {
+            [value.min(least), value.max(most)]
+        })
+    })
 }
 
 impl Report {
@@ -44,6 +80,7 @@ impl Report {
         Some(Quotient {
             ratio: shown_ratio(ns, other_ns),
             interval: found.and_then(|found| found.moved_to(ns / other_ns).interval(confidence)),
+            range: None,
             meshes: 1,
         })
     }
@@ -82,6 +119,7 @@ pub fn mean_quotients(
         Some(Quotient {
             ratio,
             interval: with_errors(interval, ratio, half_widths),
+            range: range(by_size.iter().map(|(_, ratio)| *ratio)),
             meshes: quotients.len(),
         })
     };
@@ -219,19 +257,45 @@ mod tests {
 
     #[test]
     fn a_mean_is_over_the_meshes_that_have_both_times() {
-        let mut reports = [2.0, 8.0, 4.0].map(report);
-        let mean = |reports: &[Report; 3]| {
+        let mut reports = [2.0, 8.0, 4.0, 4.0, 4.0, 4.0].map(report);
+        let mean = |reports: &[Report; 6]| {
             let studies: Vec<&Report> = reports.iter().collect();
             let names = ["corner-table", "half-edge"].map(str::to_owned);
             mean_quotients(&studies, BOUNDARY, &names)[0][1]
         };
         let all = mean(&reports).expect("measured");
-        assert!((all.ratio - 4.0).abs() < 1e-9 && all.meshes == 3, "{all:?}");
-        assert!(all.interval.is_some());
+        assert!((all.ratio - 4.0).abs() < 1e-9 && all.meshes == 6, "{all:?}");
+        assert_eq!(all.ends(), all.interval);
+        assert!(
+            all.interval
+                .is_some_and(|[low, high]| low > 2.0 && high < 8.0)
+        );
         reports[1].results[1].median_ns = None;
-        let two = mean(&reports).expect("measured");
-        assert!((two.ratio - 8_f64.sqrt()).abs() < 1e-9, "{two:?}");
-        assert_eq!((two.meshes, two.interval), (2, None));
+        let five = mean(&reports).expect("measured");
+        assert!(
+            (five.ratio - 2.0 * 2_f64.powf(0.8)).abs() < 1e-9,
+            "{five:?}"
+        );
+        assert_eq!((five.meshes, five.interval), (5, None));
+        assert_eq!(five.ends(), Some([2.0, 4.0]));
+    }
+
+    #[test]
+    fn a_mean_is_undecided_if_the_times_are_equal_on_a_mesh_or_the_interval_contains_1() {
+        let mean = |ratios: &[f64]| {
+            let reports: Vec<Report> = ratios.iter().copied().map(report).collect();
+            let studies: Vec<&Report> = reports.iter().collect();
+            let names = ["corner-table", "half-edge"].map(str::to_owned);
+            let mean = mean_quotients(&studies, BOUNDARY, &names)[0][1].expect("measured");
+            mean.is_undecided()
+        };
+        assert_eq!(mean(&[3.0]), None);
+        assert_eq!(mean(&[3.0, 1.2]), Some(false));
+        assert_eq!(mean(&[3.0, 1.05]), Some(true));
+        assert_eq!(mean(&[3.0, 0.9]), Some(true));
+        // On one of many meshes, the other may be faster.
+        assert_eq!(mean(&[2.0, 2.0, 2.1, 1.9, 2.0, 2.0, 0.9]), Some(false));
+        assert_eq!(mean(&[2.0, 0.5, 2.0, 0.5, 2.0, 0.9]), Some(true));
     }
 
     /// The meshes agree, but the launches on each do not.
@@ -246,19 +310,19 @@ mod tests {
             }
             report
         };
-        let half_width = |slow: [f64; 3]| {
+        let half_width = |slow: [f64; 6]| {
             let reports = slow.map(with_launches);
             let studies: Vec<&Report> = reports.iter().collect();
             let names = ["corner-table", "half-edge"].map(str::to_owned);
             let mean = mean_quotients(&studies, BOUNDARY, &names)[0][1].expect("measured");
-            let [low, high] = mean.interval.expect("three meshes");
+            let [low, high] = mean.interval.expect("six meshes");
             (high / low).ln() / 2.0
         };
         let on_mesh = with_launches(2.0).quotient(BOUNDARY, "corner-table", "half-edge");
         let [low, high] = on_mesh.and_then(|on| on.interval).expect("three launches");
-        let expected = (high / low).ln() / 2.0 / 3_f64.sqrt();
-        assert!((half_width([2.0; 3]) / expected - 1.0).abs() < 1e-9);
+        let expected = (high / low).ln() / 2.0 / 6_f64.sqrt();
+        assert!((half_width([2.0; 6]) / expected - 1.0).abs() < 1e-9);
         // Meshes that differ have a wider interval.
-        assert!(half_width([2.0, 20.0, 0.2]) > 2.0 * expected);
+        assert!(half_width([2.0, 20.0, 0.2, 2.0, 20.0, 0.2]) > 2.0 * expected);
     }
 }

@@ -572,9 +572,9 @@ mod tests {
         });
         let corners = shapes.filter_map(|shape| match shape {
             Shape::Path {
-                points,
+                parts,
                 paint: Paint::Fill(colour),
-            } => Some((*colour, points.len())),
+            } => Some((*colour, parts[0].len())),
             _ => None,
         });
         let mut corners: Vec<(&str, usize)> = corners.collect();

@@ -75,9 +75,7 @@ impl Mesh<'_> {
 pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> ReportPage {
     let pool = results.pool();
     let meshes = meshes(studies, &pool);
-    let pooled = meshes.iter().filter(|mesh| mesh.pooled);
-    let pooled: Vec<&Report> = pooled.map(|mesh| mesh.study).collect();
-    let matrix = Matrix::of_pool(&pool, &pooled);
+    let matrix = Matrix::of_pool(&pool, studies);
     let all = pool.groups.first();
     let groups = groups::all(&pool, &meshes);
     let fastest = all.map(|all| summary::fastest_of_many(&all.overall));

@@ -2,7 +2,9 @@
 //! to the fastest. All panels have one scale.
 
 use sixfold_results::numbers::{duration, grouped, shown_ratio, times};
-use sixfold_results::{Confidence, NeighboursReport, PickReport, SpatialTask, Standing};
+use sixfold_results::{
+    Confidence, FEWEST_MESHES, NeighboursReport, PickReport, SpatialTask, Standing,
+};
 
 use super::per_unit;
 use crate::Picture;
@@ -47,6 +49,9 @@ pub(super) fn from_matrix(matrix: &Matrix, note: &str, command: &str) -> Option<
 }
 
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
+    // The fastest is tied with itself.
+    let tied = report.ranking.iter().filter(|row| row.tied_with_best);
+    let is_shared = tied.count() > 1;
     let cells = report.ranking.iter().map(|ranked| Cell {
         ratio: Some(ranked.ratio_to_best),
         interval: ranked
@@ -55,8 +60,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
             .map(|(low, high)| [low, high]),
         ns: Some(ranked.ns_per_operation),
         standing: match (ranked.ratio_to_best, ranked.tied_with_best) {
-            _ if ranked.estimated => None,
-            (1.0, _) => Some(Standing::Best),
+            _ if ranked.estimated || report.preliminary => None,
+            (1.0, _) if !is_shared => Some(Standing::Best),
             (_, true) => Some(Standing::Undecided),
             _ => Some(Standing::Slower),
         },
@@ -145,7 +150,12 @@ fn figure(
     confidence: Confidence,
     command: &str,
 ) -> Option<Figure> {
-    let interval = confidence.to_string();
+    let cells = panels.iter().flat_map(|panel| &panel.cells);
+    let meshes = cells.map(|cell| cell.each.len()).max().unwrap_or(0);
+    let interval = match meshes > 0 && meshes < FEWEST_MESHES {
+        true => "least to largest".into(),
+        false => confidence.to_string(),
+    };
     let mut table = Table::new([
         "",
         "structure",
@@ -231,7 +241,7 @@ fn caption(cells: &[&Cell], note: &str, confidence: Confidence) -> String {
             beyond && !means,
             format!("A bar with a gap is longer than {}.", times(reach)),
         ),
-        (has(|cell| cell.interval.is_some()), format!("Thin lines are {confidence} intervals.")),
+        (has(has_line), format!("Thin lines are {confidence} intervals.")),
         (has(|cell| cell.is_best() || cell.shares_first()), "The fastest, and those that share the first place, are bold.".into()),
         (
             has(|cell| cell.standing == Some(Standing::Equal)),
@@ -345,7 +355,8 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
         canvas.filled(&gap, BACKGROUND);
     }
     let mut text_from = end;
-    if let (Some([low, high]), false) = (cell.interval, cut) {
+    let interval = cell.interval.filter(|_| has_line(cell) && !cut);
+    if let Some([low, high]) = interval {
         let [low, high] = [low, high].map(|ratio| scale.place(ratio));
         let middle = y + HEIGHT / 2.0;
         canvas.line([low, middle], [high, middle], INTERVAL_COLOUR, 1.0);
@@ -361,6 +372,11 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
     };
     debug_assert!(text_from + text_width(&text, 12) < WIDTH + 20.0, "{text}");
     canvas.text([text_from + 6.0, baseline], &text, label);
+}
+
+/// Returns whether a line shows the interval. Over few meshes, the dots of the meshes say more.
+fn has_line(cell: &Cell) -> bool {
+    cell.interval.is_some() && (cell.each.is_empty() || cell.each.len() >= FEWEST_MESHES)
 }
 
 /// Draws a dot for each mesh of a mean.

@@ -82,9 +82,9 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
 
   const draw = () => {
     reading.textContent = figures.value === 'times'
-      ? `${reading.dataset.time} for each element, with its 95 % interval where there are enough samples.`
+      ? `${reading.dataset.time} for each element.`
       : baseline.value === '' ? plainReading
-        : `${reading.dataset.time} divided by that of ${baseline.value}, with the 95 % interval of this ratio.`;
+        : `${reading.dataset.time} divided by that of ${baseline.value}, with ${reading.dataset.ends}.`;
     start = figures.value === 'times' || baseline.value === '' ? 1 : 0.1;
     table.style.setProperty('--start', place(1));
     scale.textContent = start === 1 ? 'from 1 to 10' : 'from 1/10 to 10, with a line at 1';

@@ -1,12 +1,12 @@
 //! The tables of the page: the structures by kind of work, all operations, and plain tables.
 
 use maud::{Markup, html};
+use sixfold_results::Standing;
 use sixfold_results::numbers::{counted, duration, figure, rounded_down};
-use sixfold_results::{Quotient, Standing};
 
 use super::prose;
 use crate::figure::Table;
-use crate::matrix::{Cell, Line, Matrix, Source};
+use crate::matrix::{Cell, Line, Matrix, Source, ends_of_ratios};
 use crate::summary::{Drawing, Rank, Summary, SummaryFigure};
 
 /// Returns the table of the first screen.
@@ -17,7 +17,7 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
                 caption {
                     span {
                         "Times are divided by the shortest of the column. A dot is a ratio on a logarithmic scale from 1 to 10, the line \
-                         is its interval (of a mean over meshes: that of other meshes like these); an arrow is beyond. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
+                         is " (summary.ends) "; an arrow is beyond. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
                          or undecided · ≥: lower bound, not ranked. Memory: the bytes of all tables divided by the vertices, and by the triangles \
                          (or faces); multiply by the number of yours. Its bars begin at 0."
                     }
@@ -106,12 +106,12 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         .iter()
         .flat_map(|line| &line.cells)
         .any(|cell| !cell.launches.is_empty());
-    let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
-    let is_mean = cells.any(|cell| !cell.each.is_empty());
+    let is_mean = matrix.meshes > 1;
     let time = match is_mean {
         true => "Geometric mean over the meshes of the time",
         false => "Time",
     };
+    let ends = ends_of_ratios(matrix.meshes, matrix.confidence);
     html! {
         @if has_samples {
             p.faint.hint hidden { "Choose an operation to see all its samples." }
@@ -142,18 +142,12 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
             table.operations {
                 caption {
                     span {
-                        span.reading data-time=(time) {
-                            @if is_mean {
-                                (time) " divided by that of the fastest of each mesh, with the " (matrix.confidence)
-                                " interval of other meshes like these, which is not below 1."
-                            } @else {
-                                (time) " divided by that of the fastest, with its " (matrix.confidence)
-                                " interval where there are enough samples."
-                            }
+                        span.reading data-time=(time) data-ends=(ends) {
+                            (time) " divided by that of the fastest" @if is_mean { " of each mesh" } ", with " (ends) "."
                         }
                         " A dot is a ratio on a logarithmic scale "
                         span.scale { "from 1 to 10" }
-                        ", the line is its interval; an arrow is beyond."
+                        ", the line is between these ends; an arrow is beyond."
                         @if has(Source::Bound) { " ≥ with a ring: a lower bound, because a run would exceed the budget." }
                         @if has(Source::Sampled) { " ~: measured on some of the elements." }
                     }
@@ -270,10 +264,9 @@ fn quotients(line: &Line, cell: &Cell) -> String {
     let text = |(place, other): (usize, &Cell)| match cell.quotients.get(place).copied().flatten() {
         _ if other.is_bound() => String::new(),
         _ if other.backend == cell.backend => figure(1.0),
-        Some(Quotient {
-            ratio, interval, ..
-        }) => {
-            let numbers = [ratio].into_iter().chain(interval.into_iter().flatten());
+        Some(quotient) => {
+            let numbers = [quotient.ratio].into_iter();
+            let numbers = numbers.chain(quotient.ends().into_iter().flatten());
             numbers.map(figure).collect::<Vec<_>>().join(" ")
         }
         None => of_bound(other).unwrap_or_default(),

@@ -466,8 +466,9 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
         sentences.push(
             "Means over the meshes are geometric means of the time relative to the fastest backend of each mesh; each \
              power of ten of the number of faces has equal weight. Their intervals come from the variation of the logarithms from \
-             mesh to mesh by Student's distribution, for three or more meshes; where the intervals of the single meshes give a \
-             wider one, it is used."
+             mesh to mesh by Student's distribution, for six or more meshes; where the intervals of the single meshes give a \
+             wider one, it is used. With fewer meshes, the least and the largest ratio of a mesh are given, and a mean is the \
+             smallest if every other one is larger on each mesh, by more than 5 %."
                 .into(),
         );
     }

@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use sixfold_results::numbers::{counted, duration, figure as shown, grouped, list, rounded_down};
-use sixfold_results::{OperationInfo, Pool, Report, ResultRow, Results, Standing};
+use sixfold_results::{FEWEST_MESHES, OperationInfo, Pool, Report, ResultRow, Results, Standing};
 
 use crate::figures::facts;
 use crate::markdown::escape;
-use crate::matrix::{self, Line, Matrix};
+use crate::matrix::{self, Line, Matrix, ends_of_ratios};
 
 /// The largest number of meshes that have a table of their own.
 const MAX_MESH_TABLES: usize = 8;
@@ -281,13 +281,8 @@ fn means(pool: &Pool, studies: &[&Report]) -> PaperTable {
     let columns = pool.compared.clone();
     let matrix = Matrix::of_pool(pool, studies);
     let row = |line: &Line| {
-        let measured = line.cells.iter().filter(|cell| !cell.is_bound());
-        let measured: Vec<_> = measured.filter(|cell| cell.ratio.is_some()).collect();
         let cell = |column: &String| mean(line.cells.iter().find(|cell| cell.backend == *column)?);
-        PaperRow {
-            provisional: measured.len() > 1 && measured.iter().all(|cell| cell.standing.is_none()),
-            ..PaperRow::new(&line.name, columns.iter().map(cell).collect())
-        }
+        PaperRow::new(&line.name, columns.iter().map(cell).collect())
     };
     // In the order of the tables of the meshes.
     let operations = pool.all().chunk_by(|a, b| a.operation == b.operation);
@@ -295,20 +290,22 @@ fn means(pool: &Pool, studies: &[&Report]) -> PaperTable {
     let lines = operations.filter_map(|rows| line_of(&rows[0].operation));
     let rows = with_cells(lines.map(row));
     let meshes = pool.groups.first().map_or(0, |all| all.meshes.len());
-    let provisional = match rows.iter().any(|row| row.provisional) {
-        true => " †: too few meshes to name the smallest mean.",
-        false => "",
+    let decided = match meshes < FEWEST_MESHES {
+        true => "on every mesh, by more than 5 %".to_owned(),
+        false => format!(
+            "beyond chance: the {} interval of the mean quotient of both times is above 1",
+            matrix.confidence
+        ),
     };
     PaperTable {
         label: "means".into(),
         caption: format!(
-            "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh, with \
-             {confidence} intervals in brackets. Each power of ten of the number of faces has the same weight. Bold: the \
-             smallest mean, if every other backend is slower beyond chance: the {confidence} interval of the mean quotient of \
-             both times is above 1. Italic: undecided, perhaps the smallest mean. ≥: lower bound, because a run on a mesh would exceed the budget. \
-             –: not measured.{provisional}",
+            "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh; in \
+             brackets {}. Each power of ten of the number of faces has the same weight. Bold: the \
+             smallest mean, if every other backend is slower {decided}. Italic: undecided, perhaps the smallest mean. ≥: lower bound, because a run on a mesh would exceed the budget. \
+             –: not measured.",
             counted(meshes, "mesh", "meshes"),
-            confidence = matrix.confidence
+            ends_of_ratios(meshes, matrix.confidence),
         ),
         rows,
         columns,

@@ -245,7 +245,7 @@ mod tests {
             ([5.0, 20.0], "網 A", Style::new(12).middle()),
             ([5.0, 40.0], "A", Style::new(12)),
         ]);
-        let text = "<text x=\"5\" y=\"20\" font-size=\"12\" text-anchor=\"middle\">網 A</text>";
+        let text = "<text x=\"5\" y=\"20\" text-anchor=\"middle\">網 A</text>";
         assert!(svg.contains(text), "{svg}");
         assert_eq!(svg.matches("<use ").count(), 1, "{svg}");
     }

@@ -8,6 +8,7 @@ use crate::confidence::Confidence;
 use crate::findings::study::Report;
 use crate::numbers::shown_ratio;
 use crate::operation::{OperationInfo, Purpose};
+use crate::quotient::range;
 use crate::rows::{Agreement, ResultRow, Standing};
 use crate::statistics::geometric_mean;
 
@@ -315,6 +316,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                         undecided: 0,
                         log_error: log_error(backend),
                         to_first: None,
+                        range_to_first: None,
                     }
                 })
             })
@@ -330,6 +332,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                 let quotients = quotients.map(|((size, own), (_, first))| (size, own / first));
                 let quotients: Vec<(u32, f64)> = quotients.collect();
                 let error = row.log_error.hypot(first.log_error);
+                row.range_to_first = range(quotients.iter().map(|(_, quotient)| *quotient));
                 row.to_first = match studies {
                     [_] => [&row.backend, &first.backend]
                         .into_iter()
@@ -358,8 +361,12 @@ pub(crate) fn confidence(studies: &[&Report]) -> Confidence {
     first.map_or_else(Confidence::default, |first| first.run.settings.confidence)
 }
 
+/// The interval of a mean over fewer meshes would say little: for three, Student's distribution gives 4.3 standard
+/// errors.
+pub const FEWEST_MESHES: usize = 6;
+
 /// Returns the geometric mean in which each power of ten has equal weight, and the interval of the
-/// mean over all values, moved to this mean.
+/// mean over all values, moved to this mean; no interval with fewer than six values.
 pub(crate) fn mean_over_sizes(
     values: &[(u32, f64)],
     confidence: Confidence,
@@ -375,6 +382,7 @@ pub(crate) fn mean_over_sizes(
     let (mean, _) = geometric_mean(&means, confidence)?;
     let all: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
     let (centre, interval) = geometric_mean(&all, confidence)?;
+    let interval = interval.filter(|_| all.len() >= FEWEST_MESHES);
     let interval = interval.map(|ends| ends.map(|end| end * mean / centre));
     Some((mean, interval))
 }

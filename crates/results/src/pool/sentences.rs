@@ -4,6 +4,7 @@ use super::{Holding, Overall, Pool};
 use crate::findings::pick::EQUAL_UP_TO;
 use crate::findings::study::Report;
 use crate::numbers::{counted, list};
+use crate::quotient::is_undecided;
 
 impl Pool {
     pub(super) fn describe(&self, studies: &[&Report]) -> Vec<String> {
@@ -63,17 +64,15 @@ impl Pool {
 }
 
 /// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 % slower, or whose
-/// [interval](Overall::interval_to_first) contains 1; without an interval, those that are slower by less than the error
-/// of the means of one mesh. A lower bound is never one of them. Empty if `rows` has only lower bounds.
+/// [interval](Overall::interval_to_first) contains 1, or, without an interval, that are at most 5 % slower on one of
+/// several meshes, or slower by less than the error of the means of one mesh. A lower bound is never one of them. Empty
+/// if `rows` has only lower bounds.
 pub fn leaders(rows: &[Overall]) -> &[Overall] {
     let equal = |row: &&Overall| {
         let error = row.log_error.hypot(rows[0].log_error);
         let ratio = row.ratio_to_best / rows[0].ratio_to_best;
-        let is_open = match row.interval_to_first() {
-            Some([low, _]) => low <= 1.0,
-            None => ratio <= error.exp(),
-        };
-        !row.bound && (ratio <= EQUAL_UP_TO || is_open)
+        let is_open = is_undecided(row.interval_to_first(), row.range_to_first());
+        !row.bound && (ratio <= EQUAL_UP_TO || is_open.unwrap_or(ratio <= error.exp()))
     };
     &rows[..rows.iter().take_while(equal).count()]
 }
@@ -121,9 +120,7 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let next = match next_best(rows) {
         Some((next, ratio)) => format!("; {next} {ratio} the time"),
         // The means differ, but perhaps not on other meshes.
-        None if first.meshes > 1 && best.iter().any(|row| row.interval_to_first().is_some()) => {
-            String::new()
-        }
+        None if best.iter().any(|row| row.range_to_first().is_some()) => String::new(),
         None => return None,
     };
     let is_equal = |row: &Overall| row.ratio_to_best <= first.ratio_to_best * EQUAL_UP_TO;
