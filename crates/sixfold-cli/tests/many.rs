@@ -96,9 +96,9 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
     assert_eq!(pooled.len(), 12);
     for row in pooled {
         assert_eq!(row["meshes"], 3, "{row}");
-        let [low, mean, high] =
-            ["ci_low", "ratio_to_best", "ci_high"].map(|name| row[name].as_f64());
-        assert!(mean > Some(0.5) && low <= mean && mean <= high, "{row}");
+        assert!(row["ratio_to_best"].as_f64() > Some(0.99), "{row}");
+        // Three meshes are too few for an interval.
+        assert!(row["ci_low"].is_null() && row["ci_high"].is_null(), "{row}");
     }
     // Each sample has one line. The samples of the control are left out.
     let studies = studies(&report);
