@@ -9,7 +9,7 @@ use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, time
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
 use sixfold_results::{
     BackendReport, OrdersReport, Overall, Pool, Purpose, Report, ResultRow, Results, Standing,
-    leaders, next_best,
+    leaders, next_best, next_row,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -500,14 +500,18 @@ fn fastest(
         }
         let names = match best.len() == rows.len() && rows[0].meshes == 1 {
             true => "no clear difference".to_owned(),
-            false => best.iter().map(name).collect::<Vec<_>>().join(" or "),
+            false => best
+                .iter()
+                .map(|row| name(row))
+                .collect::<Vec<_>>()
+                .join(" or "),
         };
         let provisional = match is_provisional(purpose) {
             true => " (provisional, too few samples)",
             false => "",
         };
-        let next = next_best(rows).map_or(String::new(), |(next, ratio)| {
-            let row = &rows[best.len()];
+        let next = next_best(rows).zip(next_row(rows));
+        let next = next.map_or(String::new(), |((next, ratio), row)| {
             let interval = row.ends_to_first().map(|ends| ends.map(figure));
             let interval = interval.filter(|[low, high]| low != high);
             let of_which = match (row.meshes, row.interval_to_first()) {
@@ -539,7 +543,7 @@ const TABLES: &str = "Not in a study: flat tables of only the relations that a p
 pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String> {
     let overall = study.overall();
     let queries = Purpose::Query.rows(&overall);
-    let leader = leaders(queries).first()?;
+    let leader = queries.first().filter(|row| !row.bound)?;
     let orders = orders_of(study, results);
     let order = orders.and_then(|orders| order_effect(orders, &leader.backend));
     let points = [

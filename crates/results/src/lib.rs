@@ -74,7 +74,7 @@ pub use json::write_json;
 pub use merge::MergeError;
 pub use operation::{OperationGroup, OperationInfo, Purpose};
 pub use pool::{
-    FEWEST_MESHES, Group, Holding, Overall, Pool, Pooled, leaders, next_best, not_ranked,
+    FEWEST_MESHES, Group, Holding, Overall, Pool, Pooled, leaders, next_best, next_row, not_ranked,
     operations, overall,
 };
 pub use quotient::{Quotient, mean_quotients};

@@ -20,7 +20,7 @@ use means::pooled;
 pub use means::{FEWEST_MESHES, operations, overall};
 pub(crate) use means::{confidence, half_width, mean_over_sizes, with_errors};
 use sentences::warnings;
-pub use sentences::{leaders, next_best, not_ranked};
+pub use sentences::{leaders, next_best, next_row, not_ranked};
 
 use crate::numbers::{grouped, rounded_down, times};
 

@@ -62,11 +62,15 @@ impl Report {
     /// element. `None` if one of the times was not measured, or if one of the backends did other work.
     pub fn quotient(&self, operation: &str, backend: &str, other: &str) -> Option<Quotient> {
         let [own, other] = [backend, other].map(|name| measured(self, operation, name));
-        let (own, other) = (own?, other?);
+        self.quotient_of_rows(own?, other?)
+    }
+
+    /// Returns the quotient of the times of two measured rows, which may be of two methods of one task.
+    pub(crate) fn quotient_of_rows(&self, own: &ResultRow, other: &ResultRow) -> Option<Quotient> {
         let (ns, other_ns) = (own.ns_per_element?, other.ns_per_element?);
         let samples = |row: &ResultRow| {
             let mut samples = self.samples.iter();
-            samples.find(|s| !s.control && s.backend == row.backend && s.operation == operation)
+            samples.find(|s| !s.control && s.backend == row.backend && s.operation == row.operation)
         };
         let found = match own.launch_ns.is_empty() {
             true => samples(own)

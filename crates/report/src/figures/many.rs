@@ -5,7 +5,7 @@ mod groups;
 mod outliers;
 
 use sixfold_results::numbers::{counted, grouped, list};
-use sixfold_results::{Overall, Pool, Purpose, Report, Results, leaders};
+use sixfold_results::{Overall, Pool, Purpose, Report, Results, leaders, next_row};
 
 use super::{facts, file_name, heat_map, labs, memory, ranking, recorded_command, slug};
 use crate::data::rows;
@@ -47,7 +47,7 @@ fn leaders_of(pool: &Pool) -> Vec<(Purpose, &str)> {
     let leaders = rows
         .chunk_by(|a, b| a.purpose == b.purpose)
         .filter_map(|rows| {
-            let first = leaders(rows).first()?;
+            let first = rows.first().filter(|row| !row.bound)?;
             Some((first.purpose, first.backend.as_str()))
         });
     leaders.collect()
@@ -227,11 +227,11 @@ fn overview(meshes: &[Mesh<'_>]) -> Table {
                 cells.push("too few samples".into());
                 continue;
             }
-            let next = rows.get(best.len()).map(|next| next.times(&rows[0]));
+            let next = next_row(rows).map(|next| next.times(&rows[0]));
             cells.push(match (best.len(), next) {
                 (0, _) => "–".into(),
-                (_, None) => names(best),
-                (_, Some(next)) => format!("{} (next {next})", names(best)),
+                (_, None) => names(&best),
+                (_, Some(next)) => format!("{} (next {next})", names(&best)),
             });
         }
         table.linked_row(cells, mesh.id.clone());
@@ -251,7 +251,7 @@ fn kind(study: &Report) -> String {
     }
 }
 
-fn names(rows: &[Overall]) -> String {
+fn names(rows: &[&Overall]) -> String {
     let names: Vec<&str> = rows.iter().map(|row| row.backend.as_str()).collect();
     names.join(" or ")
 }

@@ -14,7 +14,8 @@ use crate::statistics::geometric_mean;
 
 /// A time in nanoseconds.
 #[derive(Clone, Copy)]
-struct Known {
+struct Known<'r> {
+    row: &'r ResultRow,
     ns: f64,
     /// The time per element.
     each: f64,
@@ -25,9 +26,9 @@ struct Known {
     log_error: Option<f64>,
 }
 
-impl Known {
+impl<'r> Known<'r> {
     /// Returns the time of a row: measured, or estimated. Returns `None` for other work.
-    fn of(row: &ResultRow) -> Option<Self> {
+    fn of(row: &'r ResultRow) -> Option<Self> {
         let ns = row.median_ns.or(row.estimated_ns)?;
         let bound = row.median_ns.is_none();
         let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
@@ -39,6 +40,7 @@ impl Known {
         };
         let each = ns / row.elements.unwrap_or(1).max(1) as f64;
         (ns > 0.0 && same_work).then_some(Self {
+            row,
             ns,
             each,
             bound,
@@ -144,7 +146,7 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
 }
 
 /// Returns the smallest measured time. A lower bound cannot be the smallest time.
-fn least_measured(times: impl Iterator<Item = Known>) -> Option<Known> {
+fn least_measured<'r>(times: impl Iterator<Item = Known<'r>>) -> Option<Known<'r>> {
     let measured = times.filter(|time| !time.bound);
     measured.min_by(|a, b| a.ns.total_cmp(&b.ns))
 }
@@ -152,7 +154,10 @@ fn least_measured(times: impl Iterator<Item = Known>) -> Option<Known> {
 /// Removes the cases in which the shortest time is not known, because a lower bound is below the shortest
 /// measured time: a mean with such a case would favour the structures that were measured. If this is so in all
 /// cases, they stay, and the answer names what is not ranked.
-fn keep_decided<I: Iterator<Item = Known>>(cases: &mut Vec<usize>, times: impl Fn(usize) -> I) {
+fn keep_decided<'r, I: Iterator<Item = Known<'r>>>(
+    cases: &mut Vec<usize>,
+    times: impl Fn(usize) -> I,
+) {
     let is_decided = |case: &usize| {
         let least = least_measured(times(*case));
         least.is_some_and(|least| times(*case).all(|time| !time.bound || time.ns >= least.ns))
@@ -276,9 +281,17 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             let squares: f64 = errors.map(|error| error.powi(2)).sum();
             squares.sqrt() / shared.len().max(1) as f64
         };
-        let has_intervals = |backend: &str| {
-            let mut known = shared.iter().filter_map(|&case| value(case, backend));
-            known.all(|known| known.log_error.is_some())
+        // The half-width of the interval of the quotient of two means on one mesh: that of the quotients of the times, whose
+        // errors are independent. The methods of a subdivision scheme may differ.
+        let error_of_quotient = |study: &Report, own: &str, first: &str| -> Option<f64> {
+            let squares = shared.iter().map(|&case| {
+                let [own, first] = [own, first].map(|backend| value(case, backend));
+                let quotient = study.quotient_of_rows(own?.row, first?.row)?;
+                let [low, high] = quotient.interval?;
+                Some(half_width(low, high)?.powi(2))
+            });
+            let squares: Option<f64> = squares.sum();
+            Some(squares?.sqrt() / shared.len() as f64)
         };
         // The mean of the ratios on each mesh, with the size of the mesh.
         let by_mesh = |backend: &str| -> Vec<(u32, f64)> {
@@ -331,17 +344,16 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                 let quotients = by_mesh(&row.backend).into_iter().zip(&of_first);
                 let quotients = quotients.map(|((size, own), (_, first))| (size, own / first));
                 let quotients: Vec<(u32, f64)> = quotients.collect();
-                let error = row.log_error.hypot(first.log_error);
                 row.range_to_first = range(quotients.iter().map(|(_, quotient)| *quotient));
                 row.to_first = match studies {
-                    [_] => [&row.backend, &first.backend]
-                        .into_iter()
-                        .all(|backend| has_intervals(backend))
-                        .then(|| {
+                    [study] => {
+                        error_of_quotient(study, &row.backend, &first.backend).map(|error| {
                             let quotient = row.ratio_to_best / first.ratio_to_best;
                             [quotient * (-error).exp(), quotient * error.exp()]
-                        }),
+                        })
+                    }
                     _ => mean_over_sizes(&quotients, confidence).and_then(|(mean, ends)| {
+                        let error = row.log_error.hypot(first.log_error);
                         with_errors(ends, mean, [Some(error)].into_iter())
                     }),
                 };

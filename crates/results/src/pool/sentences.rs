@@ -67,23 +67,30 @@ impl Pool {
 /// [interval](Overall::interval_to_first) contains 1, or, without an interval, that are at most 5 % slower on one of
 /// several meshes, or slower by less than the error of the means of one mesh. A lower bound is never one of them. Empty
 /// if `rows` has only lower bounds.
-pub fn leaders(rows: &[Overall]) -> &[Overall] {
-    let equal = |row: &&Overall| {
-        let error = row.log_error.hypot(rows[0].log_error);
-        let ratio = row.ratio_to_best / rows[0].ratio_to_best;
-        let is_open = is_undecided(row.interval_to_first(), row.range_to_first());
-        !row.bound && (ratio <= EQUAL_UP_TO || is_open.unwrap_or(ratio <= error.exp()))
-    };
-    &rows[..rows.iter().take_while(equal).count()]
+pub fn leaders(rows: &[Overall]) -> Vec<&Overall> {
+    let leads = |row: &&Overall| is_leader(row, &rows[0]);
+    rows.iter().filter(leads).collect()
+}
+
+fn is_leader(row: &Overall, first: &Overall) -> bool {
+    let error = row.log_error.hypot(first.log_error);
+    let ratio = row.ratio_to_best / first.ratio_to_best;
+    let is_open = is_undecided(row.interval_to_first(), row.range_to_first());
+    !row.bound && (ratio <= EQUAL_UP_TO || is_open.unwrap_or(ratio <= error.exp()))
+}
+
+/// Returns the next backend after the [`leaders`]: the fastest measured one, or else one that has only a lower bound.
+pub fn next_row(rows: &[Overall]) -> Option<&Overall> {
+    rows.iter().find(|row| !is_leader(row, &rows[0]))
 }
 
 /// Returns the next backends after the [`leaders`], with their time relative to the first: the
 /// fastest measured one, or else those that have only lower bounds. `None` if there are no others.
 pub fn next_best(rows: &[Overall]) -> Option<(String, String)> {
-    let others = &rows[leaders(rows).len()..];
-    let next = others.first()?;
+    let next = next_row(rows)?;
     // Lower bounds do not show which of the backends is the next.
-    let name = match next.bound && others.len() > 1 {
+    let bounds = rows.iter().filter(|row| row.bound).count();
+    let name = match next.bound && bounds > 1 {
         true => "the others".to_owned(),
         false => next.backend.clone(),
     };
@@ -98,7 +105,8 @@ pub fn next_best(rows: &[Overall]) -> Option<(String, String)> {
 /// Names the backends whose lower bound does not show that they are slower than the [`leaders`], as
 /// an addition to a sentence.
 pub fn not_ranked(rows: &[Overall]) -> Option<String> {
-    let last = leaders(rows).last()?;
+    let leaders = leaders(rows);
+    let last = leaders.last()?;
     let open = rows
         .iter()
         .filter(|row| row.bound && row.ratio_to_best <= last.ratio_to_best);
@@ -116,7 +124,7 @@ pub fn not_ranked(rows: &[Overall]) -> Option<String> {
 /// Describes the fastest backends of one purpose. `compared` is the number of all compared backends.
 fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let best = leaders(rows);
-    let first = best.first()?;
+    let first = *best.first()?;
     let next = match next_best(rows) {
         Some((next, ratio)) => format!("; {next} {ratio} the time"),
         // The means differ, but perhaps not on other meshes.
@@ -125,9 +133,9 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     };
     let is_equal = |row: &Overall| row.ratio_to_best <= first.ratio_to_best * EQUAL_UP_TO;
     let names = list(best.iter().map(|row| row.backend.clone()));
-    let lead = match best {
+    let lead = match &best[..] {
         [_] => format!("{names} is fastest on average"),
-        best if best.iter().all(is_equal) => {
+        _ if best.iter().all(|row| is_equal(row)) => {
             format!("{names} are fastest on average, within 5 % of the first")
         }
         _ => format!("it is undecided which is fastest on average of {names}"),

@@ -72,7 +72,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
                         return right("–".into());
                     };
                     let is_leader = best.iter().any(|best| best.backend == row.backend);
-                    let mark = match (is_leader, best) {
+                    let mark = match (is_leader, &best[..]) {
                         (false, _) => "",
                         (true, [_]) => "*",
                         (true, _) => "=",

@@ -11,6 +11,7 @@ use crate::labs::study::study_on;
 use crate::{Settings, StudyMesh};
 use sixfold_results::{
     Finding, Overall, Pool, Pooled, Purpose, Report, ResultRow, Results, Standing, leaders,
+    next_row,
 };
 
 const BOUNDARY: Operation = Operation::Boundary;
@@ -415,6 +416,69 @@ fn subdivision_is_compared_with_the_fastest_method_of_each_backend() {
             ("face-vertex", subdivide, 2.0)
         ]
     );
+}
+
+/// The fastest methods differ, and each is the fastest of its operation: the error is that of their quotient.
+#[test]
+fn the_mean_of_two_methods_has_the_interval_of_their_quotient() {
+    let mut study = ball("a", &[("face-vertex", 1000.0), ("half-edge", 1000.0)]);
+    let row = |backend: &str, method, ns, launches: [f64; 3]| ResultRow {
+        median_ns: Some(ns),
+        elements: Some(1),
+        ns_per_element: Some(ns),
+        ratio_to_best: Some(1.0),
+        launch_ns: launches.map(|factor| Some(ns * factor)).into(),
+        ..ResultRow::new(
+            backend,
+            Operation::Loop(method).name(),
+            Operation::Loop(method).unit(),
+        )
+    };
+    let ends = |study: &Report| {
+        let rows = study.overall();
+        assert_eq!(rows[1].backend, "face-vertex");
+        let [low, high] = rows[1].interval_to_first().expect("three launches");
+        assert!(low < 2.0 && 2.0 < high, "{low} to {high}");
+        (high / low, leaders(&rows).len())
+    };
+    study.results = vec![
+        row("face-vertex", Method::Scatter, 600.0, [1.0, 1.02, 0.98]),
+        row("half-edge", Method::Native, 300.0, [1.0; 3]),
+    ];
+    let (narrow, leading) = ends(&study);
+    assert!(1.05 < narrow && narrow < 2.0, "{narrow}");
+    assert_eq!(leading, 1);
+    study.results[0] = row("face-vertex", Method::Scatter, 600.0, [1.0, 2.0, 0.5]);
+    let (wide, leading) = ends(&study);
+    assert!(wide > 4.0, "{wide}");
+    assert_eq!(leading, 2);
+}
+
+/// One that is surely slower does not hide a slower one that may be as fast as the first.
+#[test]
+fn a_backend_leads_by_its_own_interval() {
+    let mut study = ball(
+        "a",
+        &[
+            ("half-edge", 100.0),
+            ("corner-table", 200.0),
+            ("face-vertex", 300.0),
+        ],
+    );
+    for row in &mut study.results {
+        let launches = match row.backend.as_str() {
+            "face-vertex" => [0.1, 1.0, 10.0],
+            _ => [1.0, 1.01, 0.99],
+        };
+        let ns = row.median_ns.expect("measured");
+        row.ns_per_element = Some(ns / 10.0);
+        row.launch_ns = launches.map(|factor| Some(ns * factor)).into();
+    }
+    let rows = study.overall();
+    let names: Vec<&str> = leaders(&rows).iter().map(|row| &*row.backend).collect();
+    assert_eq!(names, ["half-edge", "face-vertex"]);
+    let next = next_row(&rows).expect("a slower one");
+    assert_eq!(next.backend, "corner-table");
 }
 
 #[test]

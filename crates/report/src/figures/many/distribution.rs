@@ -127,7 +127,8 @@ fn panel<'m>(
     leader: &'m str,
 ) -> Panel<'m> {
     let means = purpose.rows(&all.overall);
-    let leading = leaders(means).len();
+    let leaders = leaders(means);
+    let leads = |mean: &Overall| leaders.iter().any(|row| row.backend == mean.backend);
     let dots = |backend: &str| {
         let dots = meshes.iter().filter_map(|mesh| {
             let mut rows = mesh.relative_to(leader, purpose).into_iter();
@@ -141,18 +142,18 @@ fn panel<'m>(
         });
         dots.collect()
     };
-    let line = |(place, mean): (usize, &'m Overall)| Line {
+    let line = |mean: &'m Overall| Line {
         text: mean.times(&means[0]),
         mean,
         ratio: mean.ratio_to_best / means[0].ratio_to_best,
-        lead: place < leading,
+        lead: leads(mean),
         dots: dots(&mean.backend),
     };
     Panel {
         purpose,
         leader,
         meshes: means.first().map_or(0, |mean| mean.meshes),
-        lines: means.iter().enumerate().map(line).collect(),
+        lines: means.iter().map(line).collect(),
     }
 }
 

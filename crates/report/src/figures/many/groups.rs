@@ -1,7 +1,7 @@
 //! The answer by size and kind of mesh.
 
 use sixfold_results::numbers::{counted, grouped, list};
-use sixfold_results::{Overall, Pool, Purpose, Report, leaders, overall};
+use sixfold_results::{Overall, Pool, Purpose, Report, leaders, next_row, overall};
 
 use super::{Mesh, names};
 use crate::figure::{Table, TitledTable};
@@ -77,7 +77,7 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
         let answers = |means: &Means| -> Vec<String> {
             let purposes = Purpose::ALL.into_iter();
             let leaders = purposes.map(|purpose| leaders(purpose.rows(&means.overall)));
-            leaders.map(names).collect()
+            leaders.map(|leaders| names(&leaders)).collect()
         };
         let is_same = parts.iter().all(|part| answers(part) == answers(all));
         return Some(match is_same {
@@ -104,7 +104,7 @@ fn other_answer(all: &Means, part: &Means, purpose: Purpose) -> Option<String> {
     let first = usual.first()?;
     let decided = best.iter().any(|row| row.best > 0);
     let differs = decided && best.iter().all(|row| row.backend != first.backend);
-    differs.then(|| format!("{} ({})", purpose.of_choice(), names(best)))
+    differs.then(|| format!("{} ({})", purpose.of_choice(), names(&best)))
 }
 
 /// Returns the table of the fastest structures of each group, with the number of meshes on which they are
@@ -145,10 +145,8 @@ fn winner(rows: &[Overall], meshes: usize) -> String {
     let Some(first) = best.first() else {
         return "–".into();
     };
-    let each: Vec<String> = best.iter().map(summary::wins).collect();
-    let next = rows
-        .get(best.len())
-        .map(|next| format!("; next {}", next.times(first)));
+    let each: Vec<String> = best.iter().map(|row| summary::wins(row)).collect();
+    let next = next_row(rows).map(|next| format!("; next {}", next.times(first)));
     let fewer = (first.meshes < meshes)
         .then(|| format!("; only {}", counted(first.meshes, "mesh", "meshes")));
     [

@@ -5,7 +5,7 @@ use sixfold::Relation;
 use crate::labs::study::methods::methods;
 use sixfold_results::numbers::{grouped, list};
 use sixfold_results::{
-    Agreement, BackendReport, Overall, Purpose, Report, ResultRow, leaders, not_ranked,
+    Agreement, BackendReport, Overall, Purpose, Report, ResultRow, leaders, next_row, not_ranked,
 };
 
 /// Returns the answer in at most three sentences: which backend for what, by how much, and how sure.
@@ -79,7 +79,7 @@ fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
 /// that scan.
 fn next_best(purposes: &[&[Overall]], scanning: &[&str]) -> Option<String> {
     let next = purposes.iter().filter_map(|rows| {
-        let first = rows.get(leaders(rows).len())?;
+        let first = next_row(rows)?;
         let is_local = !scanning.contains(&first.backend.as_str());
         let purpose = rows[0].purpose.title().to_lowercase();
         let (next, ratio) = sixfold_results::next_best(rows)?;
