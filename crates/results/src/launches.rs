@@ -92,19 +92,26 @@ pub fn times_over_launches(launches: &[&[Option<f64>]]) -> Vec<Option<f64>> {
         if moved < NEGLIGIBLE {
             break;
         }
-        for (launch, effect) in of_launch.iter_mut().enumerate() {
+        let effects = (0..count).map(|launch| {
             let residuals = of_backend.iter().zip(&logs);
             let residuals = residuals.filter_map(|(backend, logs)| {
                 let log = logs.get(launch).copied().flatten()?;
                 Some(log - (*backend)?)
             });
-            *effect = median(residuals.collect()).unwrap_or(0.0);
-        }
+            median(residuals.collect())
+        });
+        let effects: Vec<Option<f64>> = effects.collect();
+        // Relative to the mean of the launches that have a time. Otherwise, the effects of launches and backends move
+        // against each other, without an end.
+        let typical = mean(effects.iter().copied().flatten()).unwrap_or(0.0);
+        let centred = effects
+            .iter()
+            .map(|effect| effect.unwrap_or(typical) - typical);
+        of_launch = centred.collect();
     }
-    let typical = mean(of_launch).unwrap_or(0.0);
     of_backend
         .into_iter()
-        .map(|effect| Some((effect? + typical).exp()))
+        .map(|effect| Some(effect?.exp()))
         .collect()
 }
 

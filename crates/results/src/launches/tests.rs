@@ -52,6 +52,37 @@ fn a_backend_gains_nothing_by_its_absence_from_a_slow_launch() {
     );
 }
 
+/// Found in a study of 15 launches of which three had time for an operation: the times were ten times too short.
+#[test]
+fn launches_without_times_change_nothing() {
+    let soup = [4396.0, 8055.0, 3675.0];
+    let faces = [1987.0, 2098.0, 409.0];
+    let others = [
+        [2.289, 2.423, 2.316],
+        [0.647, 0.432, 0.438],
+        [0.286, 0.298, 0.283],
+    ];
+    let rows = [&[soup, faces][..], &others].concat();
+    let times = |empty: usize| -> Vec<f64> {
+        let launches = rows.iter().map(|row| {
+            let known = row.map(Some).into_iter();
+            known.chain(vec![None; empty]).collect()
+        });
+        let launches: Vec<Vec<Option<f64>>> = launches.collect();
+        let lists: Vec<&[Option<f64>]> = launches.iter().map(Vec::as_slice).collect();
+        let times = times_over_launches(&lists).into_iter();
+        times.collect::<Option<_>>().expect("times")
+    };
+    let expected = times(0);
+    for (row, &time) in rows.iter().zip(&expected) {
+        let ends = [f64::min, f64::max].map(|of| row.iter().copied().reduce(of).expect("three"));
+        assert!((ends[0]..=ends[1]).contains(&time), "{time} of {row:?}");
+    }
+    for (time, expected) in times(12).iter().zip(&expected) {
+        assert!(close(*time, *expected), "{time} {expected}");
+    }
+}
+
 #[test]
 fn a_single_launch_has_no_interval() {
     let one = [Some(5.0)];

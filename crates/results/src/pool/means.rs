@@ -282,13 +282,18 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             squares.sqrt() / shared.len().max(1) as f64
         };
         // The half-width of the interval of the quotient of two means on one mesh: that of the quotients of the times, whose
-        // errors are independent. The methods of a subdivision scheme may differ.
+        // errors are independent. Two methods of a subdivision scheme may have no launch in common.
         let error_of_quotient = |study: &Report, own: &str, first: &str| -> Option<f64> {
             let squares = shared.iter().map(|&case| {
                 let [own, first] = [own, first].map(|backend| value(case, backend));
-                let quotient = study.quotient_of_rows(own?.row, first?.row)?;
-                let [low, high] = quotient.interval?;
-                Some(half_width(low, high)?.powi(2))
+                let (own, first) = (own?.row, first?.row);
+                let quotient = study.quotient_of_rows(own, first)?;
+                let together = quotient
+                    .interval
+                    .and_then(|[low, high]| half_width(low, high));
+                let apart = |row: &ResultRow| half_width(row.ci_low_ns?, row.ci_high_ns?);
+                let error = together.or_else(|| Some(apart(own)?.hypot(apart(first)?)));
+                Some(error?.powi(2))
             });
             let squares: Option<f64> = squares.sum();
             Some(squares?.sqrt() / shared.len() as f64)

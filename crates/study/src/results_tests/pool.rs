@@ -452,6 +452,13 @@ fn the_mean_of_two_methods_has_the_interval_of_their_quotient() {
     let (wide, leading) = ends(&study);
     assert!(wide > 4.0, "{wide}");
     assert_eq!(leading, 2);
+    // Without a launch in common, the errors of both times count.
+    study.results[0].launch_ns = vec![None, None, None, Some(600.0)];
+    (study.results[0].ci_low_ns, study.results[0].ci_high_ns) = (Some(500.0), Some(720.0));
+    (study.results[1].ci_low_ns, study.results[1].ci_high_ns) = (Some(200.0), Some(450.0));
+    let (apart, _) = ends(&study);
+    let expected = 1.2_f64.ln().hypot(1.5_f64.ln()) * 2.0;
+    assert!((apart.ln() - expected).abs() < 1e-9, "{apart}");
 }
 
 /// One that is surely slower does not hide a slower one that may be as fast as the first.
