@@ -5,8 +5,8 @@ use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
 
 /// Size of a panel with two axes, and their places: three panels fit beside each other on the page, and the names of
 /// curves are at their right.
-pub(crate) const SIZE: [f64; 2] = [368.0, 270.0];
-pub(crate) const ACROSS: [f64; 2] = [66.0, 212.0];
+pub(crate) const SIZE: [f64; 2] = [356.0, 270.0];
+pub(crate) const ACROSS: [f64; 2] = [66.0, 202.0];
 pub(crate) const UPWARDS: [f64; 2] = [228.0, 44.0];
 /// Columns of a picture of such panels.
 pub(crate) const COLUMNS: usize = 3;

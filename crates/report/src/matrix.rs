@@ -79,10 +79,15 @@ pub(crate) struct Matrix {
     pub(crate) meshes: usize,
 }
 
+/// An interval whose ends differ by more than this factor says that nothing is known, and is not shown.
+pub(crate) const WIDEST: f64 = 1000.0;
+
 /// Says which ends are shown with the ratios of so many meshes.
 pub(crate) fn ends_of_ratios(meshes: usize, confidence: Confidence) -> String {
     match meshes {
-        0 | 1 => format!("its {confidence} interval where there are enough samples"),
+        0 | 1 => format!(
+            "its {confidence} interval if there are enough samples and its ends differ by less than {WIDEST} times"
+        ),
         count if count < FEWEST_MESHES => "the least and the largest on a mesh".into(),
         _ => format!(
             "the {confidence} interval of other meshes like these (with times on fewer than {FEWEST_MESHES}: the least and \
@@ -163,7 +168,12 @@ impl Cell {
         match self.standing {
             Some(Standing::Best) => notes.push("best"),
             Some(Standing::Equal) => notes.push("equal to the best"),
-            Some(Standing::Undecided) => notes.push("undecided, perhaps the best"),
+            Some(Standing::Undecided) => match self.interval {
+                Some([low, _]) if low > 1.0 && self.each.is_empty() => notes.push(
+                    "undecided, perhaps the best: two measurements of one backend differ by as much",
+                ),
+                _ => notes.push("undecided, perhaps the best"),
+            },
             _ => {}
         }
         match self.source {
@@ -270,10 +280,7 @@ impl Cell {
     }
 }
 
-/// An interval whose ends differ by more than this factor says that nothing is known.
-const WIDEST: f64 = 1000.0;
-
-fn is_known([low, high]: &[f64; 2]) -> bool {
+pub(crate) fn is_known([low, high]: &[f64; 2]) -> bool {
     *high <= WIDEST * low
 }
 
@@ -412,28 +419,41 @@ fn without_time(studies: &[&Report], operation: &str, backend: &str) -> Source {
     }
 }
 
-/// Sets which means are the smallest: one alone if its quotients with the others are [decided](Quotient::is_undecided),
-/// otherwise all whose quotient is not. Without intervals and ranges, nothing is set.
+/// Sets how the means compare, by their [quotients](Quotient::standing): those that are not slower than another one share
+/// the first place. Without intervals and ranges, nothing is set.
 fn set_standings(cells: &mut [Cell]) {
-    let ratio = |cell: &Cell| cell.ratio.filter(|_| !cell.is_bound());
-    let measured = (0..cells.len()).filter_map(|place| Some((place, ratio(&cells[place])?)));
-    let least = measured.min_by(|a, b| a.1.total_cmp(&b.1));
-    let Some((first, _)) = least else { return };
-    let others = (0..cells.len()).filter(|&place| place != first && ratio(&cells[place]).is_some());
-    let is_open = |place: usize| cells[place].quotients.get(first)?.as_ref()?.is_undecided();
-    let others: Option<Vec<(usize, bool)>> =
-        others.map(|place| Some((place, is_open(place)?))).collect();
-    let Some(others) = others.filter(|others| !others.is_empty()) else {
+    let ratio = |place: usize| cells[place].ratio.filter(|_| !cells[place].is_bound());
+    let measured = (0..cells.len()).filter_map(|place| Some((place, ratio(place)?)));
+    let measured: Vec<(usize, f64)> = measured.collect();
+    let first = measured.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    let Some(&(first, _)) = first.filter(|_| measured.len() > 1) else {
         return;
     };
-    let open = others.into_iter().filter(|(_, is_open)| *is_open);
-    let open: Vec<usize> = open.map(|(place, _)| place).collect();
-    cells[first].standing = Some(match open.is_empty() {
-        true => Standing::Best,
-        false => Standing::Undecided,
-    });
-    for place in open {
-        cells[place].standing = Some(Standing::Undecided);
+    let against = |own: usize, other: usize| -> Option<Standing> {
+        cells[own].quotients.get(other)?.as_ref()?.standing()
+    };
+    let standing = |own: usize| -> Option<Standing> {
+        let mut others = measured.iter().map(|(other, _)| *other);
+        match others.any(|other| other != own && against(own, other) == Some(Standing::Slower)) {
+            true => Some(Standing::Slower),
+            false => against(own, first),
+        }
+    };
+    let others = measured.iter().map(|(place, _)| *place);
+    let others = others.filter(|&place| place != first);
+    let others: Option<Vec<(usize, Standing)>> = others
+        .map(|place| Some((place, standing(place)?)))
+        .collect();
+    let Some(others) = others else { return };
+    let has = |standing| others.iter().any(|&(_, other)| other == standing);
+    let of_first = match () {
+        () if has(Standing::Undecided) => Standing::Undecided,
+        () if has(Standing::Equal) => Standing::Equal,
+        () => Standing::Best,
+    };
+    cells[first].standing = Some(of_first);
+    for (place, standing) in others {
+        cells[place].standing = Some(standing);
     }
 }
 
@@ -454,7 +474,7 @@ pub(crate) fn likely_first<T>(backends: &mut [T], overall: &[Overall], name: imp
 
 /// Returns the measured ratios of one backend to the fastest of each mesh.
 fn ratios(studies: &[&Report], operation: &str, backend: &str) -> Vec<f64> {
-    let ratio = |study: &&Report| study.row(operation, backend)?.ratio_to_best;
+    let ratio = |study: &&Report| study.shown_ratio(study.row(operation, backend)?);
     studies.iter().filter_map(ratio).collect()
 }
 

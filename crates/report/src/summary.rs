@@ -3,7 +3,7 @@
 
 use crate::figure::Table;
 use crate::figures::break_even;
-use crate::matrix::{ends_of_ratios, likely_first};
+use crate::matrix::{ends_of_ratios, is_known, likely_first};
 use sixfold_results::launches::FEWEST_LAUNCHES;
 use sixfold_results::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_results::ranking::FEWEST_OF_A_WINNER;
@@ -334,6 +334,7 @@ fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<Summary
     };
     let ratio = row.ratio_to_best / rows[0].ratio_to_best;
     let interval = row.ends_to_first().filter(|_| !row.bound);
+    let interval = interval.filter(|ends| row.meshes > 1 || is_known(ends));
     let text = row.times(&rows[0]);
     Some(SummaryFigure::ratio(ratio, interval, rank, text))
 }
@@ -512,7 +513,9 @@ fn fastest(
         };
         let next = next_best(rows).zip(next_row(rows));
         let next = next.map_or(String::new(), |((next, ratio), row)| {
-            let interval = row.ends_to_first().map(|ends| ends.map(figure));
+            let interval = row.ends_to_first();
+            let interval = interval.filter(|ends| row.meshes > 1 || is_known(ends));
+            let interval = interval.map(|ends| ends.map(figure));
             let interval = interval.filter(|[low, high]| low != high);
             let of_which = match (row.meshes, row.interval_to_first()) {
                 (1, _) => "",
@@ -622,7 +625,7 @@ fn few_queries(study: &Report) -> Option<String> {
         .collect();
     (!steps.is_empty()).then(|| {
         format!(
-            "few queries (with the time to build, the shortest total has {}, then {name})",
+            "few queries (with the time of a first build, the shortest total has {}, then {name})",
             list(steps)
         )
     })

@@ -102,6 +102,9 @@ pub struct Overall {
     /// the times of one mesh; 0 if there are several meshes.
     #[serde(skip)]
     pub(crate) log_error: f64,
+    /// Whether no other backend is faster by a clear difference.
+    #[serde(skip)]
+    pub(crate) leads: bool,
     /// The interval of the mean time divided by that of the fastest backend on average; `None` for this backend, and
     /// without the intervals of the single times.
     #[serde(skip)]

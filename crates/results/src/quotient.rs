@@ -6,7 +6,7 @@ use crate::launches::ratio_over_launches;
 use crate::numbers::shown_ratio;
 use crate::pool::{confidence, decade, half_width, mean_over_sizes, with_errors};
 use crate::ranking::ratio;
-use crate::rows::{Agreement, ResultRow, Samples};
+use crate::rows::{Agreement, ResultRow, Samples, Standing};
 use crate::statistics::undisturbed;
 use crate::time::Time;
 
@@ -31,19 +31,20 @@ impl Quotient {
         self.interval.or(self.range)
     }
 
-    /// Returns whether the times, of which the first is longer, may be equally long; `None` if this is unknown.
-    pub fn is_undecided(&self) -> Option<bool> {
-        is_undecided(self.interval, self.range)
-    }
-}
-
-/// Returns whether a mean ratio above 1 leaves open which time is shorter: its interval contains 1. If the meshes are too
-/// few for an interval, the times are equal on at least one of them: up to 5 %. `None` without both.
-pub(crate) fn is_undecided(interval: Option<[f64; 2]>, range: Option<[f64; 2]>) -> Option<bool> {
-    match (interval, range) {
-        (Some([low, _]), _) => Some(low <= 1.0),
-        (None, Some([least, _])) => Some(least <= EQUAL_UP_TO),
-        (None, None) => None,
+    /// Returns how the first of two times compares with the second one: slower, equal up to 5 %, or undecided. It is
+    /// undecided if the interval contains 1, or, if the meshes are too few for an interval, if it is at most 5 % longer on one
+    /// of them. `None` without an interval and a range.
+    pub fn standing(&self) -> Option<Standing> {
+        let [_, most] = self.ends()?;
+        let is_open = match (self.interval, self.range) {
+            (Some([low, _]), _) => low <= 1.0,
+            (None, range) => range?[0] <= EQUAL_UP_TO,
+        };
+        Some(match () {
+            () if most <= EQUAL_UP_TO => Standing::Equal,
+            () if is_open || self.ratio <= EQUAL_UP_TO => Standing::Undecided,
+            () => Standing::Slower,
+        })
     }
 }
 
@@ -98,38 +99,33 @@ pub fn mean_quotients(
     operation: &str,
     backends: &[String],
 ) -> Vec<Vec<Option<Quotient>>> {
-    let times = |backend: &String| -> Vec<Option<f64>> {
-        let time = |study: &&Report| measured(study, operation, backend)?.median_ns;
-        studies.iter().map(time).collect()
-    };
-    let times: Vec<Vec<Option<f64>>> = backends.iter().map(times).collect();
-    let quotient = |own: usize, other: usize| {
-        let both = studies.iter().zip(times[own].iter().zip(&times[other]));
-        let quotients = both.filter_map(|(study, (own, other))| {
-            let ratio = (*own)? / (*other)?;
-            ratio.is_finite().then_some((*study, ratio))
+    let quotient = |own: &String, other: &String| {
+        let on_meshes = studies.iter().filter_map(|study| {
+            let on_mesh = study.quotient(operation, own, other)?;
+            on_mesh
+                .ratio
+                .is_finite()
+                .then_some((decade(study), on_mesh))
         });
-        let quotients: Vec<(&Report, f64)> = quotients.collect();
-        let by_size = quotients
+        let on_meshes: Vec<(u32, Quotient)> = on_meshes.collect();
+        let ratios = on_meshes.iter().map(|(_, on_mesh)| on_mesh.ratio);
+        let by_size = on_meshes
             .iter()
-            .map(|(study, ratio)| (decade(study), *ratio));
-        let by_size: Vec<(u32, f64)> = by_size.collect();
-        let (ratio, interval) = mean_over_sizes(&by_size, confidence(studies))?;
-        let half_widths = quotients.iter().map(|(study, _)| {
-            let on_mesh = study.quotient(operation, &backends[own], &backends[other])?;
+            .map(|(size, on_mesh)| (*size, on_mesh.ratio));
+        let (ratio, interval) = mean_over_sizes(&by_size.collect::<Vec<_>>(), confidence(studies))?;
+        let half_widths = on_meshes.iter().map(|(_, on_mesh)| {
             let [low, high] = on_mesh.interval?;
             half_width(low, high)
         });
         Some(Quotient {
             ratio,
             interval: with_errors(interval, ratio, half_widths),
-            range: range(by_size.iter().map(|(_, ratio)| *ratio)),
-            meshes: quotients.len(),
+            range: range(ratios),
+            meshes: on_meshes.len(),
         })
     };
-    let all = 0..times.len();
-    let row = |own| all.clone().map(|other| quotient(own, other)).collect();
-    all.clone().map(row).collect()
+    let row = |own| backends.iter().map(|other| quotient(own, other)).collect();
+    backends.iter().map(row).collect()
 }
 
 /// Returns the row of a measured time that can be compared with others.
@@ -285,21 +281,27 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_is_undecided_if_the_times_are_equal_on_a_mesh_or_the_interval_contains_1() {
+    fn a_mean_is_undecided_if_times_are_equal_on_a_mesh_or_the_interval_contains_1() {
         let mean = |ratios: &[f64]| {
             let reports: Vec<Report> = ratios.iter().copied().map(report).collect();
             let studies: Vec<&Report> = reports.iter().collect();
             let names = ["corner-table", "half-edge"].map(str::to_owned);
             let mean = mean_quotients(&studies, BOUNDARY, &names)[0][1].expect("measured");
-            mean.is_undecided()
+            mean.standing()
         };
+        let [slower, undecided, equal] =
+            [Standing::Slower, Standing::Undecided, Standing::Equal].map(Some);
+        // The samples of a mesh have an interval, but a mean over one mesh has none.
         assert_eq!(mean(&[3.0]), None);
-        assert_eq!(mean(&[3.0, 1.2]), Some(false));
-        assert_eq!(mean(&[3.0, 1.05]), Some(true));
-        assert_eq!(mean(&[3.0, 0.9]), Some(true));
+        assert_eq!(mean(&[3.0, 1.2]), slower);
+        assert_eq!(mean(&[3.0, 1.05]), undecided);
+        assert_eq!(mean(&[3.0, 0.9]), undecided);
+        assert_eq!(mean(&[1.02, 1.05]), equal);
         // On one of many meshes, the other may be faster.
-        assert_eq!(mean(&[2.0, 2.0, 2.1, 1.9, 2.0, 2.0, 0.9]), Some(false));
-        assert_eq!(mean(&[2.0, 0.5, 2.0, 0.5, 2.0, 0.9]), Some(true));
+        assert_eq!(mean(&[2.0, 2.0, 2.1, 1.9, 2.0, 2.0, 0.9]), slower);
+        assert_eq!(mean(&[2.0, 0.5, 2.0, 0.5, 2.0, 0.9]), undecided);
+        assert_eq!(mean(&[1.04, 1.03, 1.03, 1.03, 1.03, 1.03]), equal);
+        assert_eq!(mean(&[1.08, 1.03, 1.03, 1.03, 1.03, 1.06]), undecided);
     }
 
     /// The meshes agree, but the launches on each do not.

@@ -281,6 +281,7 @@ impl Crossing {
     fn text(&self, units: &str) -> String {
         let range = match self.range {
             None => String::new(),
+            Some([low, high]) if approximate(low) == approximate(high) => String::new(),
             Some([low, high]) if high < MOST_RUNS => {
                 format!(" ({} to {})", approximate(low), approximate(high))
             }

@@ -93,7 +93,10 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         caption: format!(
             "Each point is one relation on one structure; all panels have the same axes. The dashed lines show the time in which \
              a simple loop on this machine reads as many bytes in order: {}.{faster} The shape of a point shows what limits the query. Square: bandwidth (near a \
-             line). Ring: waiting for reads that cannot be predicted. Dot: work on data that is near.",
+             line). Ring: waiting for reads that cannot be predicted. Dot: work on data that is near. The table has the lines of one query alone, and \
+             the bytes and jumps of queries at all elements: lines that are not cached, and those of them that are not near a cached one. \
+             ~: from some of the queries. The times to move the bytes and to wait for the jumps are those of a buffer as large as what all \
+             queries read.",
             speeds.collect::<Vec<_>>().join(", and ")
         ),
         table: table(&rows),
@@ -134,10 +137,10 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
     let labels = spread(&heights, 13.0, [UPWARDS[1], UPWARDS[0]]);
     for (((row, timed), [x, y]), label) in rows.iter().zip(places).zip(labels) {
         let title = format!(
-            "{}, {}: {:.1} bytes, {} {}: {}",
+            "{}, {}: {}, {} {}: {}",
             row.backend,
             row.reads.relation,
-            row.reads.moved_bytes,
+            bytes(row.reads.moved_bytes.round() as usize),
             duration(timed.ns_per_element),
             per_unit(&row.per),
             timed.bound.name()
@@ -167,6 +170,7 @@ fn table(rows: &[TimedRow]) -> Table {
     let mut table = Table::new([
         "",
         "structure",
+        "cache lines",
         "bytes",
         "jumps",
         "time",
@@ -175,11 +179,13 @@ fn table(rows: &[TimedRow]) -> Table {
         "bound by",
     ]);
     for (row, timed) in rows {
+        let sign = if row.reads.sampled { "~ " } else { "" };
         table.row(vec![
             row.reads.relation.to_string(),
             row.backend.clone(),
-            shown(row.reads.moved_bytes),
-            format!("{:.2}", row.reads.jumps),
+            format!("{sign}{}", shown(row.reads.lines)),
+            format!("{sign}{}", shown(row.reads.moved_bytes)),
+            format!("{sign}{:.2}", row.reads.jumps),
             duration(timed.ns_per_element),
             duration(timed.floor_ns),
             duration(timed.waits_ns),

@@ -82,9 +82,10 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
 
   const draw = () => {
     reading.textContent = figures.value === 'times'
-      ? `${reading.dataset.time} for each element.`
+      ? `${reading.dataset.time} for each element. The dots are ratios to the fastest.`
       : baseline.value === '' ? plainReading
         : `${reading.dataset.time} divided by that of ${baseline.value}, with ${reading.dataset.ends}.`;
+    baseline.disabled = figures.value === 'times';
     start = figures.value === 'times' || baseline.value === '' ? 1 : 0.1;
     table.style.setProperty('--start', place(1));
     scale.textContent = start === 1 ? 'from 1 to 10' : 'from 1/10 to 10, with a line at 1';
@@ -109,7 +110,7 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
             cell.innerHTML = cellHtml(`${cell.dataset.sign ?? ''}${text} ×`, low && `${low} to ${high}`);
             setDot(cell, value(text), low && value(low), high && value(high));
           } else {
-            cell.textContent = '–';
+            cell.innerHTML = cellHtml('–', `no time of ${baseline.value}`);
             cell.classList.remove('dot', 'over', 'under');
           }
         }
@@ -131,7 +132,7 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
 
   // The samples of an operation: a line of ticks for each launch, on one logarithmic axis for all columns that are at
   // most ten times slower than the fastest. On an axis with all, the ticks of each would be one.
-  const NAMES = 130, LENGTH = 560, LAUNCH = 6, TOP = 22;
+  const NAMES = 130, LENGTH = Math.min(560, Math.max(160, innerWidth - NAMES - 70)), LAUNCH = 6, TOP = 22;
   const samplesOf = ({name, cells}) => {
     const known = cells.filter(({samples}) => samples.length).map(({backend, samples}) => {
       const all = samples.flat();

@@ -16,7 +16,7 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
             table.summary {
                 caption {
                     span {
-                        "Times are divided by the shortest of the column. A dot is a ratio on a logarithmic scale from 1 to 10, the line \
+                        "Times, or their geometric means, are divided by the shortest of the column. A dot is a ratio on a logarithmic scale from 1 to 10, the line \
                          is " (summary.ends) "; an arrow is beyond. " b { "● best" } " · " b { "◐ shared" } ": equal to the best, \
                          or undecided · ≥: lower bound, not ranked. Memory: the bytes of all tables divided by the vertices, and by the triangles \
                          (or faces); multiply by the number of yours. Its bars begin at 0."
@@ -107,6 +107,8 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         .flat_map(|line| &line.cells)
         .any(|cell| !cell.launches.is_empty());
     let is_mean = matrix.meshes > 1;
+    let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
+    let has_undecided = !is_mean && cells.any(|cell| cell.standing == Some(Standing::Undecided));
     let time = match is_mean {
         true => "Geometric mean over the meshes of the time",
         false => "Time",
@@ -148,7 +150,8 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
                         " A dot is a ratio on a logarithmic scale "
                         span.scale { "from 1 to 10" }
                         ", the line is between these ends; an arrow is beyond."
-                        @if has(Source::Bound) { " ≥ with a ring: a lower bound, because a run would exceed the budget." }
+                        @if has(Source::Bound) { " ≥, with a ring: a lower bound, because a run would exceed the budget." }
+                        @if has_undecided { " Undecided: perhaps the fastest, because the interval contains 1, or two measurements of one backend differ by as much." }
                         @if has(Source::Sampled) { " ~: measured on some of the elements." }
                     }
                 }
@@ -258,18 +261,20 @@ fn times_of_dot(cell: &Cell) -> Option<String> {
 /// a lower bound, has no numbers.
 fn quotients(line: &Line, cell: &Cell) -> String {
     let of_bound = |other: &Cell| {
-        let (own, other) = cell.ratio.filter(|_| cell.is_bound()).zip(other.ratio)?;
+        let (own, other) = cell.ratio.zip(other.ratio)?;
         Some(figure(rounded_down(own / other)))
     };
     let text = |(place, other): (usize, &Cell)| match cell.quotients.get(place).copied().flatten() {
         _ if other.is_bound() => String::new(),
         _ if other.backend == cell.backend => figure(1.0),
+        // The time may have been measured on some of the meshes.
+        _ if cell.is_bound() => of_bound(other).unwrap_or_default(),
         Some(quotient) => {
             let numbers = [quotient.ratio].into_iter();
             let numbers = numbers.chain(quotient.ends().into_iter().flatten());
             numbers.map(figure).collect::<Vec<_>>().join(" ")
         }
-        None => of_bound(other).unwrap_or_default(),
+        None => String::new(),
     };
     let texts: Vec<String> = line.cells.iter().enumerate().map(text).collect();
     texts.join("|")

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::{Overall, Pooled, common, decade, leaders, not_ranked};
 use crate::confidence::Confidence;
+use crate::findings::pick::EQUAL_UP_TO;
 use crate::findings::study::Report;
 use crate::numbers::shown_ratio;
 use crate::operation::{OperationInfo, Purpose};
-use crate::quotient::range;
+use crate::quotient::{Quotient, range};
 use crate::rows::{Agreement, ResultRow, Standing};
 use crate::statistics::geometric_mean;
 
@@ -103,7 +104,8 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
                 .iter()
                 .filter_map(|&mesh| {
                     let (row, time) = value(mesh, backend)?;
-                    let ratio = row.ratio_to_best.unwrap_or(time / least(mesh)?);
+                    let shown = studies[mesh].shown_ratio(row);
+                    let ratio = shown.unwrap_or(time / least(mesh)?);
                     Some((decade(studies[mesh]), ratio))
                 })
                 .collect();
@@ -262,11 +264,8 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
         });
         let ratio = |case: usize, backend: &str| {
             let (own, least) = (value(case, backend)?, least(case)?);
-            Some(match studies {
-                // The times of one mesh are shown. A reader who divides two of them gets the ratio.
-                [_] => shown_ratio(own.each, least.each),
-                _ => own.ns / least.ns,
-            })
+            // The times of each mesh are shown. A reader who divides two of them gets the ratio.
+            Some(shown_ratio(own.each, least.each))
         };
         let is_bound = |backend: &str| {
             let mut times = shared.iter().filter_map(|&case| value(case, backend));
@@ -281,22 +280,24 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             let squares: f64 = errors.map(|error| error.powi(2)).sum();
             squares.sqrt() / shared.len().max(1) as f64
         };
-        // The half-width of the interval of the quotient of two means on one mesh: that of the quotients of the times, whose
-        // errors are independent. Two methods of a subdivision scheme may have no launch in common.
-        let error_of_quotient = |study: &Report, own: &str, first: &str| -> Option<f64> {
-            let squares = shared.iter().map(|&case| {
-                let [own, first] = [own, first].map(|backend| value(case, backend));
-                let (own, first) = (own?.row, first?.row);
-                let quotient = study.quotient_of_rows(own, first)?;
-                let together = quotient
-                    .interval
-                    .and_then(|[low, high]| half_width(low, high));
+        // The interval of the quotient of two means on one mesh, from those of the quotients of the times, whose errors
+        // are independent. Two methods of a subdivision scheme may have no launch in common.
+        let interval_on_mesh = |study: &Report, own: &str, other: &str| -> Option<[f64; 2]> {
+            let (mut log, mut squares) = (0.0, 0.0);
+            for &case in &shared {
+                let (own, other) = (value(case, own)?.row, value(case, other)?.row);
+                let quotient = study.quotient_of_rows(own, other)?;
                 let apart = |row: &ResultRow| half_width(row.ci_low_ns?, row.ci_high_ns?);
-                let error = together.or_else(|| Some(apart(own)?.hypot(apart(first)?)));
-                Some(error?.powi(2))
-            });
-            let squares: Option<f64> = squares.sum();
-            Some(squares?.sqrt() / shared.len() as f64)
+                let (centre, error) = match quotient.interval {
+                    Some([low, high]) => (f64::sqrt(low * high), half_width(low, high)?),
+                    None => (quotient.ratio, apart(own)?.hypot(apart(other)?)),
+                };
+                log += centre.ln();
+                squares += error.powi(2);
+            }
+            let count = shared.len() as f64;
+            let (centre, error) = ((log / count).exp(), squares.sqrt() / count);
+            Some([centre * (-error).exp(), centre * error.exp()])
         };
         // The mean of the ratios on each mesh, with the size of the mesh.
         let by_mesh = |backend: &str| -> Vec<(u32, f64)> {
@@ -333,6 +334,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
                         tied: 0,
                         undecided: 0,
                         log_error: log_error(backend),
+                        leads: false,
                         to_first: None,
                         range_to_first: None,
                     }
@@ -343,26 +345,45 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
             let by_ratio = a.ratio_to_best.total_cmp(&b.ratio_to_best);
             a.bound.cmp(&b.bound).then(by_ratio)
         });
-        if let Some((first, others)) = rows.split_first_mut().filter(|(first, _)| !first.bound) {
-            let of_first = by_mesh(&first.backend);
-            for row in others.iter_mut().filter(|row| !row.bound) {
-                let quotients = by_mesh(&row.backend).into_iter().zip(&of_first);
-                let quotients = quotients.map(|((size, own), (_, first))| (size, own / first));
-                let quotients: Vec<(u32, f64)> = quotients.collect();
-                row.range_to_first = range(quotients.iter().map(|(_, quotient)| *quotient));
-                row.to_first = match studies {
-                    [study] => {
-                        error_of_quotient(study, &row.backend, &first.backend).map(|error| {
-                            let quotient = row.ratio_to_best / first.ratio_to_best;
-                            [quotient * (-error).exp(), quotient * error.exp()]
-                        })
-                    }
-                    _ => mean_over_sizes(&quotients, confidence).and_then(|(mean, ends)| {
-                        let error = row.log_error.hypot(first.log_error);
-                        with_errors(ends, mean, [Some(error)].into_iter())
-                    }),
-                };
+        let quotient = |own: &Overall, other: &Overall| -> Quotient {
+            let on_meshes = by_mesh(&own.backend)
+                .into_iter()
+                .zip(by_mesh(&other.backend));
+            let on_meshes = on_meshes.map(|((size, own), (_, other))| (size, own / other));
+            let on_meshes: Vec<(u32, f64)> = on_meshes.collect();
+            let interval = match studies {
+                [study] => interval_on_mesh(study, &own.backend, &other.backend),
+                _ => mean_over_sizes(&on_meshes, confidence).and_then(|(mean, ends)| {
+                    let error = own.log_error.hypot(other.log_error);
+                    with_errors(ends, mean, [Some(error)].into_iter())
+                }),
+            };
+            Quotient {
+                ratio: own.ratio_to_best / other.ratio_to_best,
+                interval,
+                range: range(on_meshes.iter().map(|(_, ratio)| *ratio)),
+                meshes: on_meshes.len(),
             }
+        };
+        let is_slower = |own: &Overall, other: &Overall| {
+            let quotient = quotient(own, other);
+            match quotient.standing() {
+                Some(standing) => standing == Standing::Slower,
+                None => {
+                    let error = own.log_error.hypot(other.log_error);
+                    quotient.ratio > error.exp().max(EQUAL_UP_TO)
+                }
+            }
+        };
+        let measured = rows.iter().take_while(|row| !row.bound).count();
+        for place in 0..measured {
+            let (faster, own) = (&rows[..place], &rows[place]);
+            let leads = !faster.iter().any(|other| is_slower(own, other));
+            let ends = faster.first().map(|first| quotient(own, first));
+            let row = &mut rows[place];
+            row.leads = leads;
+            row.to_first = ends.and_then(|ends| ends.interval);
+            row.range_to_first = ends.and_then(|ends| ends.range);
         }
         overall.extend(rows);
         let mut meshes: Vec<usize> = shared.iter().map(|&case| cases[case].0).collect();

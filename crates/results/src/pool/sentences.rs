@@ -4,7 +4,6 @@ use super::{Holding, Overall, Pool};
 use crate::findings::pick::EQUAL_UP_TO;
 use crate::findings::study::Report;
 use crate::numbers::{counted, list};
-use crate::quotient::is_undecided;
 
 impl Pool {
     pub(super) fn describe(&self, studies: &[&Report]) -> Vec<String> {
@@ -63,25 +62,17 @@ impl Pool {
     }
 }
 
-/// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 % slower, or whose
-/// [interval](Overall::interval_to_first) contains 1, or, without an interval, that are at most 5 % slower on one of
-/// several meshes, or slower by less than the error of the means of one mesh. A lower bound is never one of them. Empty
-/// if `rows` has only lower bounds.
+/// Returns the fastest backends of one purpose: those that are not slower than another one by a clear difference. A
+/// difference is clear if it is more than 5 %, and the interval of the quotient is above 1. Without an interval, it is
+/// more than 5 % on each of several meshes, or more than the error of the means of one mesh. A lower bound is never one
+/// of them. Empty if `rows` has only lower bounds.
 pub fn leaders(rows: &[Overall]) -> Vec<&Overall> {
-    let leads = |row: &&Overall| is_leader(row, &rows[0]);
-    rows.iter().filter(leads).collect()
-}
-
-fn is_leader(row: &Overall, first: &Overall) -> bool {
-    let error = row.log_error.hypot(first.log_error);
-    let ratio = row.ratio_to_best / first.ratio_to_best;
-    let is_open = is_undecided(row.interval_to_first(), row.range_to_first());
-    !row.bound && (ratio <= EQUAL_UP_TO || is_open.unwrap_or(ratio <= error.exp()))
+    rows.iter().filter(|row| row.leads).collect()
 }
 
 /// Returns the next backend after the [`leaders`]: the fastest measured one, or else one that has only a lower bound.
 pub fn next_row(rows: &[Overall]) -> Option<&Overall> {
-    rows.iter().find(|row| !is_leader(row, &rows[0]))
+    rows.iter().find(|row| !row.leads)
 }
 
 /// Returns the next backends after the [`leaders`], with their time relative to the first: the

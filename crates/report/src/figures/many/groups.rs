@@ -83,7 +83,7 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
         return Some(match is_same {
             true => "By size and kind: the same structures are the fastest for all sizes and kinds of meshes.".into(),
             false => {
-                "By size and kind: the structures with the shortest mean time share the first place for all sizes and \
+                "By size and kind: the structures with the shortest mean time are among the fastest for all sizes and \
                  kinds of meshes."
                     .into()
             }
@@ -132,7 +132,7 @@ pub(super) fn winners(groups: &[Means]) -> Option<TitledTable> {
     Some(TitledTable {
         title: "Fastest by size and kind of mesh".into(),
         caption: "The structures with the shortest mean time; in brackets, on how many meshes each alone is the fastest, of those with \
-                  enough samples; then the time of the next one. A mean in which fewer meshes take part says so. In the first row, \
+                  enough samples; then the time of the next one. A mean in which fewer meshes take part says so. Sizes and kinds are parts of the meshes that all compared structures can hold. In the first row, \
                   each power of ten of the number of faces has equal weight."
             .into(),
         table,

@@ -82,8 +82,8 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     };
     if last_level_bytes(caches).is_some() && !fits.iter().any(reliable) {
         sentences.push(
-            "Fewer than three sizes are larger than the last cache, but a reliable line needs at \
-             least three sizes: use a larger --to or more --steps."
+            "Fewer than three sizes, or none, are larger than the last cache, but a reliable line \
+             needs at least three sizes: use a larger --to or more --steps."
                 .into(),
         );
     }
@@ -112,7 +112,7 @@ fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     let (most, last) = changes.last()?;
     (small.faces < large.faces).then(|| {
         format!(
-            "From {} to {} faces, the time per element changes by a factor between {least:.2} ({} on {}) and {most:.2} ({} on {}).",
+            "On structures that do not scan all faces for each element, the time per element changes from {} to {} faces by a factor between {least:.2} ({} on {}) and {most:.2} ({} on {}).",
             grouped(small.faces),
             grouped(large.faces),
             first.operation,
