@@ -169,7 +169,7 @@ impl Cell {
             Some(Standing::Best) => notes.push("best"),
             Some(Standing::Equal) => notes.push("equal to the best"),
             Some(Standing::Undecided) => match self.interval {
-                Some([low, _]) if low > 1.0 && self.each.is_empty() => notes.push(
+                Some([low, _]) if low > 1.0 && self.samples > 0 => notes.push(
                     "undecided, perhaps the best: two measurements of one backend differ by as much",
                 ),
                 _ => notes.push("undecided, perhaps the best"),

@@ -3,7 +3,8 @@
 
 use sixfold_results::numbers::{duration, grouped, shown_ratio, times};
 use sixfold_results::{
-    Confidence, FEWEST_MESHES, NeighboursReport, PickReport, SpatialTask, Standing,
+    Confidence, EQUAL_UP_TO, FEWEST_MESHES, NeighboursReport, PickReport, Ranked, SpatialTask,
+    Standing,
 };
 
 use super::per_unit;
@@ -49,9 +50,20 @@ pub(super) fn from_matrix(matrix: &Matrix, note: &str, command: &str) -> Option<
 }
 
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
+    let equal = |ranked: &Ranked| match ranked.ci_high {
+        Some(most) if most <= EQUAL_UP_TO => Standing::Equal,
+        _ => Standing::Undecided,
+    };
     // The fastest is tied with itself.
-    let tied = report.ranking.iter().filter(|row| row.tied_with_best);
-    let is_shared = tied.count() > 1;
+    let others = report
+        .ranking
+        .iter()
+        .filter(|row| row.tied_with_best && row.ratio_to_best != 1.0);
+    let others: Vec<Standing> = others.map(equal).collect();
+    let of_first = match others.contains(&Standing::Undecided) {
+        true => Standing::Undecided,
+        false => others.first().copied().unwrap_or(Standing::Best),
+    };
     let cells = report.ranking.iter().map(|ranked| Cell {
         ratio: Some(ranked.ratio_to_best),
         interval: ranked
@@ -61,8 +73,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         ns: Some(ranked.ns_per_operation),
         standing: match (ranked.ratio_to_best, ranked.tied_with_best) {
             _ if ranked.estimated || report.preliminary => None,
-            (1.0, _) if !is_shared => Some(Standing::Best),
-            (_, true) => Some(Standing::Undecided),
+            (1.0, _) => Some(of_first),
+            (_, true) => Some(equal(ranked)),
             _ => Some(Standing::Slower),
         },
         ..Cell::new(
