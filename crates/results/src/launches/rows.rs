@@ -105,12 +105,7 @@ fn pool_group(
     let values: Vec<Vec<Option<f64>>> = rows
         .iter()
         .map(|row| {
-            // A single run before the rounds, with cold caches, counts only if there is nothing better.
-            let in_rounds = |row: &&ResultRow| row.median_ns.is_some() && !row.warm_up_only;
-            let is_enough =
-                row.iter().flatten().filter(|row| in_rounds(row)).count() >= FEWEST_LAUNCHES;
-            let of = row.iter().zip(counts);
-            let of = of.map(|(row, count)| (row.filter(|row| !is_enough || in_rounds(row)), count));
+            let of = that_count(row).into_iter().zip(counts);
             of.flat_map(|(row, &count)| values(row, count)).collect()
         })
         .collect();
@@ -138,13 +133,26 @@ fn pool_group(
         .zip(agreements)
         .zip(ranks);
     let pooled = parts.filter_map(|((((rows, values), ns), agreement), rank)| {
+        let counted = that_count(rows);
+        let counted = counted.iter().flatten().map(|row| row.samples);
         let rows: Vec<&ResultRow> = rows.iter().copied().flatten().collect();
         Some(ResultRow {
             agreement,
+            samples: counted.sum(),
             ..pool_row(&rows, values, ns, rank, confidence)?
         })
     });
     pooled.collect()
+}
+
+/// Returns the rows of those launches whose time counts, among the rows of all launches. A single run before the rounds,
+/// with cold caches, counts only if there is nothing better.
+fn that_count<'r>(rows: &[Option<&'r ResultRow>]) -> Vec<Option<&'r ResultRow>> {
+    let in_rounds = |row: &&ResultRow| row.median_ns.is_some() && !row.warm_up_only;
+    let is_enough = rows.iter().flatten().filter(|row| in_rounds(row)).count() >= FEWEST_LAUNCHES;
+    let rows = rows.iter();
+    rows.map(|row| row.filter(|row| !is_enough || in_rounds(row)))
+        .collect()
 }
 
 /// Returns the times of a row in `count` launches.
@@ -215,7 +223,6 @@ fn pool_row(
         ratio_to_best: rank.map(|rank| rank.ratio.value),
         ratio_ci_low: ratio.map(|[low, _]| low),
         ratio_ci_high: ratio.map(|[_, high]| high),
-        samples: sum(&|row| row.samples),
         warm_up_only: rows.iter().all(|row| row.warm_up_only),
         by_name_only: rows.iter().all(|row| row.by_name_only),
         faults: most(&|row| row.faults),

@@ -5,6 +5,7 @@ use rand::rngs::ChaCha8Rng;
 
 use super::*;
 use crate::corrected::corrected_times;
+use crate::rows::ResultRow;
 use crate::simulated::{LAUNCHING, normal, uniform};
 use crate::time::Time;
 
@@ -81,6 +82,41 @@ fn launches_without_times_change_nothing() {
     for (time, expected) in times(12).iter().zip(&expected) {
         assert!(close(*time, *expected), "{time} {expected}");
     }
+}
+
+/// Returns the row over launches of which each has a number of samples; 0 is a single run before the rounds.
+fn row_over(samples: &[usize]) -> ResultRow {
+    let row = |&samples: &usize| ResultRow {
+        median_ns: Some(if samples == 0 { 90.0 } else { 10.0 }),
+        warm_up_only: samples == 0,
+        samples: samples.max(1),
+        ..ResultRow::new("half-edge", "boundary", "edge")
+    };
+    let rows: Vec<[ResultRow; 1]> = samples.iter().map(|samples| [row(samples)]).collect();
+    let launches = rows.iter().map(|results| LaunchRows {
+        results,
+        refusals: &[],
+        samples: &[],
+        control: None,
+    });
+    let launches: Vec<LaunchRows<'_>> = launches.collect();
+    let pooled = pool_rows(&launches, Confidence::default(), |row| {
+        row.operation.clone()
+    });
+    let [row] = &pooled.results[..] else {
+        panic!("one row")
+    };
+    row.clone()
+}
+
+#[test]
+fn runs_before_the_rounds_count_only_without_better_ones() {
+    let row = row_over(&[0, 4, 0, 5]);
+    assert_eq!(row.launch_ns, [None, Some(10.0), None, Some(10.0)]);
+    assert!(row.median_ns.is_some_and(|ns| close(ns, 10.0)) && row.samples == 9);
+    let row = row_over(&[0, 4, 0]);
+    assert_eq!(row.launch_ns, [Some(90.0), Some(10.0), Some(90.0)]);
+    assert_eq!((row.samples, row.warm_up_only), (6, false));
 }
 
 #[test]
