@@ -378,8 +378,13 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
         let measured = rows.iter().take_while(|row| !row.bound).count();
         for place in 0..measured {
             let (faster, own) = (&rows[..place], &rows[place]);
-            let leads = !faster.iter().any(|other| is_slower(own, other));
             let ends = faster.first().map(|first| quotient(own, first));
+            // As the times of one operation are compared: on one mesh with the fastest, means over meshes with all.
+            let others = match studies {
+                [_] => &faster[..faster.len().min(1)],
+                _ => faster,
+            };
+            let leads = !others.iter().any(|other| is_slower(own, other));
             let row = &mut rows[place];
             row.leads = leads;
             row.to_first = ends.and_then(|ends| ends.interval);

@@ -62,10 +62,10 @@ impl Pool {
     }
 }
 
-/// Returns the fastest backends of one purpose: those that are not slower than another one by a clear difference. A
-/// difference is clear if it is more than 5 %, and the interval of the quotient is above 1. Without an interval, it is
-/// more than 5 % on each of several meshes, or more than the error of the means of one mesh. A lower bound is never one
-/// of them. Empty if `rows` has only lower bounds.
+/// Returns the fastest backends of one purpose: those that are not slower by a clear difference than the fastest on one
+/// mesh, or, on average over several meshes, than any other. A difference is clear if it is more than 5 %, and the
+/// interval of the quotient is above 1. Without an interval, it is more than 5 % on each of several meshes, or more than
+/// the error of the means of one mesh. A lower bound is never one of them. Empty if `rows` has only lower bounds.
 pub fn leaders(rows: &[Overall]) -> Vec<&Overall> {
     rows.iter().filter(|row| row.leads).collect()
 }
