@@ -97,7 +97,7 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
         cell.innerHTML = plain.html;
         cell.className = plain.classes;
         cell.style.cssText = plain.style;
-        entry.shown = ratio ?? times[0] ?? null;
+        entry.shown = ratio ?? null;
         if (!times.length) continue;
         if (figures.value === 'times') {
           cell.innerHTML = cellHtml(cell.dataset.time, cell.dataset.ends);

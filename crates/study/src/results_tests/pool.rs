@@ -488,6 +488,29 @@ fn a_backend_leads_by_its_own_interval() {
     assert_eq!(next.backend, "corner-table");
 }
 
+/// Over few meshes, a backend that is slower than one of the leaders on every mesh is none, although it is faster than the
+/// other one on some mesh.
+#[test]
+fn the_leaders_of_means_are_not_slower_than_each_other() {
+    let times = [("a", [100.0, 142.0, 180.0]), ("b", [100.0, 72.0, 86.0])];
+    let studies = times.map(|(name, [half_edge, winged_edge, face_vertex])| {
+        ball(
+            name,
+            &[
+                ("half-edge", half_edge),
+                ("winged-edge", winged_edge),
+                ("face-vertex", face_vertex),
+            ],
+        )
+    });
+    let pool = pool_of(&studies);
+    let rows = &pool.groups[0].overall;
+    let names: Vec<&str> = leaders(rows).iter().map(|row| &*row.backend).collect();
+    assert_eq!(names, ["half-edge", "winged-edge"]);
+    let ends = rows[2].ends_to_first().expect("two meshes");
+    assert!(ends[0] < 1.0 && ends[1] > 1.7, "{ends:?}");
+}
+
 #[test]
 fn warnings_that_differ_in_numbers_are_merged() {
     let mut studies = ["a", "b", "c"].map(|name| ball(name, &[("half-edge", 1.0)]));
