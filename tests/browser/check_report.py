@@ -118,7 +118,8 @@ def mark_text(row, ratio):
         return f"≥ {shown(rounded_down(ratio))}"
     ends = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
     has_interval = ends[0] is not None and row.get("samples", 99) >= 3 and shown(ends[0]) != shown(ends[1])
-    if "ratio_ci_low" in row and ratio == 1:
+    # An interval whose ends differ by more than a factor of 1,000 is not shown.
+    if "ratio_ci_low" in row and (ratio == 1 or ends[0] is not None and ends[1] > 1000 * ends[0]):
         has_interval = False
     return f"{shown(ratio)} ({shown(ends[0])} to {shown(ends[1])})" if has_interval else shown(ratio)
 
@@ -133,7 +134,11 @@ def check_means(figure, rows, studies):
         name, figures = mark["title"].split(": ", 1)
         row = by_name[mark["panel"], name]
         expected = mark_text(row, row["ratio_to_best"])
-        assert figures.split(" × the")[0] == expected, (mark, expected)
+        found = figures.split(" × the")[0]
+        # Over few meshes, the least and the largest ratio of a mesh stand in the place of an interval.
+        if 1 < row["meshes"] < 6:
+            found = found.split(" (")[0]
+        assert found == expected, (mark, expected)
         if not is_bound(row):
             places.append({**mark, "y": 0, "height": 0})
             ratios.append(min(1000, max(1, row["ratio_to_best"])))
