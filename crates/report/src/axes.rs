@@ -189,6 +189,7 @@ pub(crate) fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::canvas::Shape;
 
     #[test]
     fn labels_are_apart_and_keep_their_order() {
@@ -243,6 +244,24 @@ mod tests {
             expected.text([118.0, 54.0], "name", Style::new(12));
             assert_eq!(format!("{drawn:?}"), format!("{expected:?}"));
         }
+    }
+
+    #[test]
+    fn labels_of_ticks_without_room_are_left_out_from_the_right() {
+        let scale = LogScale {
+            values: [1.0, 1000.0],
+            pixels: [0.0, 120.0],
+        };
+        let mut canvas = Canvas::new(120.0, 20.0);
+        let label = |tick: f64| format!("{tick} ×");
+        scale.draw_ticks(&mut canvas, [0.0, 10.0], 18.0, TEXT_COLOUR, &label);
+        let texts = canvas.shapes.iter().filter_map(|shape| match shape {
+            Shape::Text { text, .. } => Some(text.as_str()),
+            _ => None,
+        });
+        // 1,000 × is about 40 pixels wide, 100 × is 40 pixels to its left.
+        assert_eq!(texts.collect::<Vec<_>>(), ["1000 ×", "10 ×", "1 ×"]);
+        assert_eq!(canvas.shapes.len(), 4 + 3);
     }
 
     #[test]

@@ -14,7 +14,7 @@ use tables::{operations_table, plain_table, summary_table};
 pub const GENERATOR: &str = "<meta name=\"generator\" content=\"Sixfold\">";
 
 const STYLE: &str = include_str!("html/style.css");
-/// The script of the table of operations. Its texts say 95 % for the confidence of the intervals.
+/// The script of the table of operations.
 const SCRIPT: &str = include_str!("html/script.js");
 
 /// Tables with more backends are printed across.
@@ -27,7 +27,6 @@ impl ReportPage {
     /// Returns the page as HTML without external resources.
     pub fn html(&self) -> String {
         let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
-        let script = SCRIPT.replace("95 %", &self.operations.confidence.to_string());
         let paper = match self.operations.backends.len() > MOST_COLUMNS {
             true => "landscape",
             false => "portrait",
@@ -69,7 +68,7 @@ impl ReportPage {
                         }
                         (self.method())
                     }
-                    script { (PreEscaped(script)) }
+                    script { (PreEscaped(SCRIPT)) }
                 }
             }
         };

@@ -82,7 +82,7 @@ pub(crate) struct Matrix {
 /// An interval whose ends differ by more than this factor says that nothing is known, and is not shown.
 pub(crate) const WIDEST: f64 = 1000.0;
 
-/// Says which ends are shown with the ratios of so many meshes.
+/// Returns the words for the two ends that stand below a ratio over `meshes` meshes, such as `its 95 % interval …`.
 pub(crate) fn ends_of_ratios(meshes: usize, confidence: Confidence) -> String {
     match meshes {
         0 | 1 => format!(
@@ -280,6 +280,7 @@ impl Cell {
     }
 }
 
+/// Returns whether the ends of an interval are near enough to each other to be shown.
 pub(crate) fn is_known([low, high]: &[f64; 2]) -> bool {
     *high <= WIDEST * low
 }

@@ -6,7 +6,9 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 use sixfold_report::{Drawing, Figure, Rank, ReportPage, SummaryFigure, Table};
-use sixfold_results::{Failed, FailureKind, Finding, Report, Results, Standing};
+use sixfold_results::{
+    Failed, FailureKind, Finding, Refusal, RefusalKind, Report, ResultRow, Results, Standing,
+};
 use sixfold_study::{Effort, Operation, Settings, StudyMesh, study};
 
 /// Enough rounds for intervals.
@@ -422,6 +424,46 @@ fn timed(mesh: StudyMesh, times: &[(&str, f64)]) -> Report {
 fn ball(name: &str, half_edge: f64, corner_table: f64) -> Report {
     let times = [("half-edge", half_edge), ("corner-table", corner_table)];
     timed(StudyMesh::new(name, shapes::icosahedron()), &times)
+}
+
+/// A mean says "not possible" if no mesh has a time because the backend cannot do the operation, and "not run" if a budget
+/// ended on one of them.
+#[test]
+fn means_say_why_a_backend_has_no_time() {
+    let html = |kinds: [RefusalKind; 2]| {
+        let mut all = Results::default();
+        for (name, kind) in ["a.obj", "b.obj"].into_iter().zip(kinds) {
+            let mut study = ball(name, 1.0, 3.0);
+            let operation = study.results[0].operation.clone();
+            let has_time =
+                |row: &ResultRow| (&*row.backend, &row.operation) != ("corner-table", &operation);
+            study.results.retain(has_time);
+            study.refusals.push(Refusal {
+                backend: "corner-table".into(),
+                operation,
+                kind,
+                reason: "none".into(),
+            });
+            all.add(study.into());
+        }
+        let html = ReportPage::new(&all, "sixfold study").html();
+        let table = html
+            .split("<table class=\"operations\">")
+            .nth(1)
+            .expect("the means");
+        table.split("</table>").next().expect("a table").to_owned()
+    };
+    let (impossible, ended) = (RefusalKind::Impossible, RefusalKind::BudgetEnded);
+    let both = html([impossible; 2]);
+    assert!(
+        both.contains(">not possible<") && !both.contains(">not run<"),
+        "{both}"
+    );
+    let one = html([impossible, ended]);
+    assert!(
+        one.contains(">not run<") && !one.contains(">not possible<"),
+        "{one}"
+    );
 }
 
 /// The table with this title.
