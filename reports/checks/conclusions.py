@@ -60,13 +60,14 @@ def triangles():
     return figures.count(data.document(STUDY)["meshes"][0]["faces"])
 
 
-@page.says("on {} cores of an {} with {} MiB of last-level cache")
+@page.says("on {} cores of an {} with {} MiB of last-level cache, the study of the built-in mesh with {} MiB")
 def machines():
-    environments = [*map(data.environment, (STUDY, ORDERS, beside.DATA, *GROWTH.values())), *data.workload_environments()]
-    own = environments[0]
-    data.require(all((e["cpu_model"], e["caches"]) == (own["cpu_model"], own["caches"]) for e in environments), "other machines")
-    cache = max(own["caches"], key=lambda cache: cache["level"])["bytes"] / 2**20
-    return figures.word(own["cores"]), own["cpu_model"], f"{cache:.0f}"
+    others = [*map(data.environment, (ORDERS, beside.DATA, *GROWTH.values())), *data.workload_environments()]
+    own = data.environment(STUDY)
+    last = lambda environment: max(environment["caches"], key=lambda cache: cache["level"])["bytes"] / 2**20
+    same = lambda e: (e["cpu_model"], e["cores"], last(e)) == (own["cpu_model"], own["cores"], last(others[0]))
+    data.require(all(map(same, others)), "other machines")
+    return figures.word(own["cores"]), own["cpu_model"], f"{last(others[0]):.0f}", f"{last(own):.0f}"
 
 
 @page.says("the difference is the noise: at most {} in the report on orders, {} in the median row of a size in the report on growth, "
@@ -388,12 +389,18 @@ ANSWER = "reports/built-in-mesh/report.md"
 
 
 @page.says(
-    "Half-edge is fastest for queries and for subdivision, corner table for edits, and indexed face set to build."
+    "Half-edge is fastest for queries and for subdivision, shares the first place with corner table for edits, and indexed face set "
+    "is fastest to build."
 )
 def answer_of_study():
-    expected = {"Queries": "half-edge", "Subdivision": "half-edge", "Edits": "corner-table", "Building": "indexed-face-set"}
+    expected = {
+        "Queries": "half-edge",
+        "Subdivision": "half-edge",
+        "Edits": "corner-table or half-edge",
+        "Building": "indexed-face-set",
+    }
     for work, winner in expected.items():
-        [found] = data.quoted(ANSWER, rf"- {work}: ([a-z-]+); ")
+        [found] = data.quoted(ANSWER, rf"- {work}: ([a-z -]+); ")
         data.require(found == winner, f"{work}: {found}")
 
 

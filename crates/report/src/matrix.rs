@@ -4,7 +4,7 @@ use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_results::{
     Confidence, FEWEST_MESHES, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Overall, Pool,
     Pooled, Purpose, Quotient, RefusalKind, Report, ResultRow, Samples, Standing, mean_quotients,
-    operations,
+    operations, range,
 };
 
 use crate::figure::Table;
@@ -64,6 +64,9 @@ pub(crate) struct Line {
     pub(crate) group: OperationGroup,
     /// The element that times are divided by.
     pub(crate) unit: String,
+    /// Whether there are too few samples to name the fastest: on a mesh, or, if a mean has an interval over the meshes, on
+    /// all of them.
+    pub(crate) provisional: bool,
     /// One cell for each backend of the matrix, in its order.
     pub(crate) cells: Vec<Cell>,
 }
@@ -249,27 +252,17 @@ impl Cell {
         }
     }
 
-    /// Returns the cell with the range of its ratios on the meshes, if a mean has no interval.
-    fn with_range(mut self) -> Self {
-        let each = self.each.iter().copied();
-        if self.interval.is_none() && self.each.len() > 1 && !self.is_bound() {
-            let ends = [
-                each.clone().fold(f64::INFINITY, f64::min),
-                each.fold(0.0, f64::max),
-            ];
-            self.interval = Some(ends);
-        }
-        self
-    }
-
-    fn of_pool(row: &Pooled) -> Self {
-        let source = match row.estimated {
-            0 => Source::Measured,
-            _ => Source::Bound,
+    /// Returns the cell of a mean over meshes. `each` has the ratio on each mesh.
+    fn of_pool(row: &Pooled, each: Vec<f64>) -> Self {
+        let (source, range) = match row.estimated {
+            0 => (Source::Measured, range(each.iter().copied())),
+            _ => (Source::Bound, None),
         };
+        let interval = row.ci_low.zip(row.ci_high).map(Into::into);
         Self {
             ratio: Some(row.ratio_to_best),
-            interval: row.ci_low.zip(row.ci_high).map(Into::into),
+            interval: interval.or(range),
+            each,
             ns: row.ns_per_element,
             remark: Some(format!(
                 "mean over {} meshes: single fastest on {}, shared first place on {}, not run on {}",
@@ -351,7 +344,8 @@ impl Matrix {
                     .collect(),
                 ..Cell::of_study(study, operation, name)
             });
-            Some(Line::new(info, unit, cells.collect()))
+            let provisional = study.is_provisional(operation);
+            Some(Line::new(info, unit, provisional, cells.collect()))
         });
         Self {
             lines: lines.collect(),
@@ -385,16 +379,24 @@ impl Matrix {
                 .find(|row| row.backend == *name)
             {
                 Some(row) => Cell {
-                    each: ratios(studies, operation, name),
                     quotients,
-                    ..Cell::of_pool(row)
-                }
-                .with_range(),
+                    ..Cell::of_pool(row, ratios(studies, operation, name))
+                },
                 None => Cell::new(name, without_time(studies, operation, name)),
             };
             let mut cells: Vec<Cell> = backends.iter().zip(quotients).map(cell).collect();
-            set_standings(&mut cells);
-            Some(Line::new(info, info.unit.clone(), cells))
+            let measured = studies
+                .iter()
+                .filter(|study| study.rows(operation).next().is_some());
+            let mut open = measured.map(|study| study.is_provisional(operation));
+            let provisional = match meshes.len() < FEWEST_MESHES {
+                true => open.any(|open| open),
+                false => open.all(|open| open),
+            };
+            if !provisional {
+                set_standings(&mut cells);
+            }
+            Some(Line::new(info, info.unit.clone(), provisional, cells))
         });
         Self {
             lines: lines.collect(),
@@ -505,8 +507,9 @@ impl Matrix {
 }
 
 impl Line {
-    fn new(operation: &OperationInfo, unit: String, cells: Vec<Cell>) -> Self {
+    fn new(operation: &OperationInfo, unit: String, provisional: bool, cells: Vec<Cell>) -> Self {
         Self {
+            provisional,
             name: operation.name.clone(),
             about: operation.about.clone(),
             group: operation.group,

@@ -77,7 +77,7 @@ pub use pool::{
     FEWEST_MESHES, Group, Holding, Overall, Pool, Pooled, leaders, next_best, next_row, not_ranked,
     operations, overall,
 };
-pub use quotient::{Quotient, mean_quotients};
+pub use quotient::{Quotient, mean_quotients, range};
 pub use read::ReadError;
 pub use rows::{
     Agreement, BackendRefusal, BackendReport, Control, ControlRow, ExternalReport,

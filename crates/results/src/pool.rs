@@ -7,6 +7,7 @@
 //! too slow to measure would look fast. A mean with a lower bound is one itself, and is never ranked
 //! before a measured mean. The ratios are to the fastest measured time.
 
+mod cases;
 mod means;
 mod sentences;
 
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::findings::study::Report;
 use crate::operation::Purpose;
+use crate::quotient::Quotient;
 use means::pooled;
 pub use means::{FEWEST_MESHES, operations, overall};
 pub(crate) use means::{confidence, half_width, mean_over_sizes, with_errors};
@@ -98,20 +100,12 @@ pub struct Overall {
     /// Number of meshes on which the fastest is not known: there are too few samples, or a lower bound
     /// is below the shortest measured time.
     pub undecided: usize,
-    /// The half-width of the interval of the logarithm of `ratio_to_best`, from the intervals of
-    /// the times of one mesh; 0 if there are several meshes.
-    #[serde(skip)]
-    pub(crate) log_error: f64,
     /// Whether no other backend is faster by a clear difference.
     #[serde(skip)]
     pub(crate) leads: bool,
-    /// The interval of the mean time divided by that of the fastest backend on average; `None` for this backend, and
-    /// without the intervals of the single times.
+    /// The mean time divided by that of the fastest backend on average; `None` for this backend, and for lower bounds.
     #[serde(skip)]
-    pub(crate) to_first: Option<[f64; 2]>,
-    /// The least and the largest of these quotients on a mesh; `None` on one mesh.
-    #[serde(skip)]
-    pub(crate) range_to_first: Option<[f64; 2]>,
+    pub(crate) to_first: Option<Quotient>,
 }
 
 /// The results of one operation on one backend, over several meshes.
@@ -282,23 +276,10 @@ impl Purpose {
 }
 
 impl Overall {
-    /// Returns the confidence interval of the mean time divided by that of the backend that is fastest on average.
-    /// `None` for this backend, for lower bounds, on several meshes if they are fewer than six, and on one mesh if a
-    /// time has no interval.
-    pub fn interval_to_first(&self) -> Option<[f64; 2]> {
+    /// Returns the mean time divided by that of the backend that is fastest on average. `None` for this backend, and for
+    /// lower bounds. It has no interval on several meshes if they are fewer than six, and on one mesh if a time has none.
+    pub fn to_first(&self) -> Option<Quotient> {
         self.to_first
-    }
-
-    /// Returns the ends that the mean is shown with: of its interval, or of its range if the meshes are too few for an
-    /// interval.
-    pub fn ends_to_first(&self) -> Option<[f64; 2]> {
-        self.to_first.or(self.range_to_first)
-    }
-
-    /// Returns the least and the largest mean time of a mesh, divided by that of the backend that is fastest on average.
-    /// `None` for this backend, for lower bounds, and on one mesh.
-    pub fn range_to_first(&self) -> Option<[f64; 2]> {
-        self.range_to_first
     }
 
     /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a

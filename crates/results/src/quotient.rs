@@ -48,8 +48,8 @@ impl Quotient {
     }
 }
 
-/// Returns the least and the largest of the values of several meshes.
-pub(crate) fn range(values: impl Iterator<Item = f64> + Clone) -> Option<[f64; 2]> {
+/// Returns the least and the largest of the values of several meshes; `None` for one mesh.
+pub fn range(values: impl Iterator<Item = f64> + Clone) -> Option<[f64; 2]> {
     let several = values.clone().nth(1).is_some();
     several.then(|| {
         values.fold([f64::INFINITY, 0.0], |[least, most], value| {

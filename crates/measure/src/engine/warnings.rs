@@ -11,6 +11,10 @@ use sixfold_results::{
 const FEW_DISTURBED: f64 = 0.1;
 /// Maximum ratio of wall time to processor time on an unshared processor.
 const INTERRUPTED: f64 = 1.05;
+/// A page fault takes about this time at most: the kernel finds a page and fills it with zeros.
+const FAULT_NS: f64 = 1000.0;
+/// Maximum share of page faults in the time of a sample that does not matter.
+const FAULTS_SEEN: f64 = 0.01;
 /// Maximum half-width of a narrow interval, as a part of the time.
 const WIDE: f64 = 0.1;
 /// Maximum acceptable error of the clock, as a part of the shortest sample.
@@ -85,10 +89,14 @@ fn pages_not_kept(environment: &Environment) -> Option<String> {
     }
 }
 
-/// Warns about samples with page faults, if pages are kept.
+/// Warns about samples in which page faults can take more than [`FAULTS_SEEN`] of the time, if pages are kept.
 fn page_faults(environment: &Environment, results: &[&ResultRow]) -> Option<String> {
     let heap = environment.heap.as_ref()?;
-    let has_faults = |row: &&&ResultRow| row.faults.is_some_and(|faults| faults > 0);
+    let has_faults = |row: &&&ResultRow| {
+        let sample_ns = row.median_ns.unwrap_or(0.0) * f64::from(row.runs_per_sample);
+        row.faults
+            .is_some_and(|faults| FAULT_NS * faults as f64 > FAULTS_SEEN * sample_ns)
+    };
     let rows = results.iter().filter(has_faults);
     let worst = rows.clone().max_by_key(|row| row.faults)?;
     let (count, faults) = (rows.count(), worst.faults.unwrap_or(0));

@@ -94,17 +94,20 @@ impl Cell {
 /// What bold, italic and other marks mean.
 const MARKS: &str = "Bold: the fastest backend, and backends that are equal to it. Italic: undecided, perhaps the fastest. \
                      ≥: lower bound, because a run would exceed the budget. –: not measured.";
-/// What the mark of a provisional row means.
-const PROVISIONAL: &str = " †: too few samples to name the fastest.";
+
+/// Returns what the mark of a provisional row means, if there is one.
+fn provisional(rows: &[PaperRow]) -> &'static str {
+    match rows.iter().any(|row| row.provisional) {
+        true => " †: too few samples to name the fastest.",
+        false => "",
+    }
+}
 
 /// Returns what the captions of a mesh and of workloads state. `confidence` is that of the intervals.
 fn reading(confidence: &str, rows: &[PaperRow]) -> String {
-    let provisional = match rows.iter().any(|row| row.provisional) {
-        true => PROVISIONAL,
-        false => "",
-    };
     format!(
-        "Times relative to the fastest backend of the row, with {confidence} intervals in brackets. {MARKS}{provisional}"
+        "Times relative to the fastest backend of the row, with {confidence} intervals in brackets. {MARKS}{}",
+        provisional(rows)
     )
 }
 
@@ -136,11 +139,9 @@ fn holding(study: &Report) -> Vec<String> {
 fn of_study(study: &Report, number: usize) -> PaperTable {
     let columns = holding(study);
     let row = |operation: &OperationInfo| {
-        let open = study.rows(&operation.name);
-        let mut open = open.filter(|row| row.median_ns.is_some() && row.standing.is_none());
         let cells = columns.iter();
         PaperRow {
-            provisional: open.any(|row| !row.has_enough_samples()),
+            provisional: study.is_provisional(&operation.name),
             ..PaperRow::new(
                 &operation.name,
                 cells
@@ -282,7 +283,10 @@ fn means(pool: &Pool, studies: &[&Report]) -> PaperTable {
     let matrix = Matrix::of_pool(pool, studies);
     let row = |line: &Line| {
         let cell = |column: &String| mean(line.cells.iter().find(|cell| cell.backend == *column)?);
-        PaperRow::new(&line.name, columns.iter().map(cell).collect())
+        PaperRow {
+            provisional: line.provisional,
+            ..PaperRow::new(&line.name, columns.iter().map(cell).collect())
+        }
     };
     // In the order of the tables of the meshes.
     let operations = pool.all().chunk_by(|a, b| a.operation == b.operation);
@@ -303,9 +307,10 @@ fn means(pool: &Pool, studies: &[&Report]) -> PaperTable {
             "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh; in \
              brackets {}. Each power of ten of the number of faces has the same weight. Bold: the \
              smallest mean, if every other backend is slower {decided}. Italic: undecided, perhaps the smallest mean. ≥: lower bound, because a run on a mesh would exceed the budget. \
-             –: not measured.",
+             –: not measured.{}",
             counted(meshes, "mesh", "meshes"),
             ends_of_ratios(meshes, matrix.confidence),
+            provisional(&rows),
         ),
         rows,
         columns,

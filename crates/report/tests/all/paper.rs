@@ -391,6 +391,38 @@ fn means_over_two_meshes_are_decided_by_both() {
     );
 }
 
+/// Over few meshes, one with too few samples is enough; over many, the meshes have an interval unless all have too few.
+#[test]
+fn a_mean_with_too_few_samples_has_its_mark_and_nothing_bold() {
+    for (meshes, open, marked) in [(2, 1, true), (6, 5, false), (6, 6, true)] {
+        let mut all = Results::default();
+        for number in 0..meshes {
+            let mut study = known_study(&format!("{number}.obj"));
+            for row in &mut study.results {
+                if row.operation == "build" && number < open {
+                    row.standing = None;
+                    row.samples = 2;
+                }
+            }
+            all.add(study.into());
+        }
+        let files = paper(&all);
+        let tex = text(&files, "results.tex");
+        let context = format!("{open} of {meshes}");
+        let caption = tex.split("\\label{tab:sixfold-means}").next();
+        let has_caption = caption.is_some_and(|text| text.contains("too few samples"));
+        assert_eq!(has_caption, marked, "{context}");
+        let lines = tex_table(tex, "means");
+        let [build, normals] = ["build", "vertex_normal"].map(|name| line_of(&lines, name));
+        assert_eq!(build.contains("dagger"), marked, "{context}: {build}");
+        assert_eq!(!build.contains("\\textbf"), marked, "{context}: {build}");
+        assert!(
+            normals.contains("\\textbf{1.00}") && !normals.contains("dagger"),
+            "{context}: {normals}"
+        );
+    }
+}
+
 /// On the built-in mesh, one backend is the fastest in decimation, and two share the first place in remeshing.
 #[test]
 fn rankings_of_workloads_are_bold_if_they_are_decided() {

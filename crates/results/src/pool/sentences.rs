@@ -1,5 +1,7 @@
 //! The fastest backends of each kind of work, and the sentences of a pool.
 
+use std::cmp::Reverse;
+
 use super::{Holding, Overall, Pool};
 use crate::findings::pick::EQUAL_UP_TO;
 use crate::findings::study::Report;
@@ -119,7 +121,12 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let next = match next_best(rows) {
         Some((next, ratio)) => format!("; {next} {ratio} the time"),
         // The means differ, but perhaps not on other meshes.
-        None if best.iter().any(|row| row.range_to_first().is_some()) => String::new(),
+        None if best
+            .iter()
+            .any(|row| row.to_first().is_some_and(|own| own.range.is_some())) =>
+        {
+            String::new()
+        }
         None => return None,
     };
     let is_equal = |row: &Overall| row.ratio_to_best <= first.ratio_to_best * EQUAL_UP_TO;
@@ -144,29 +151,50 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     ))
 }
 
-/// Returns the warnings of the studies. Warnings that differ only in numbers are merged.
+/// Returns the warnings of the studies, those of the most meshes first. Warnings of one kind are merged: that of the mesh
+/// with the largest number or share is shown, with the number of the others.
 pub(super) fn warnings(studies: &[&Report]) -> Vec<String> {
-    let mut merged: Vec<(String, &str, Vec<&str>)> = Vec::new();
+    let mut kinds: Vec<(String, Vec<(&str, &str)>)> = Vec::new();
     for study in studies {
         for warning in &study.warnings {
-            let pattern: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
-            let mesh = study.mesh.name.as_str();
-            match merged.iter_mut().find(|(known, ..)| *known == pattern) {
-                Some((.., meshes)) => meshes.push(mesh),
-                None => merged.push((pattern, warning, vec![mesh])),
+            // The sentences after the first one name operations and backends.
+            let (first, _) = warning.split_once(". ").unwrap_or((warning, ""));
+            let kind: String = first.chars().filter(|c| !c.is_ascii_digit()).collect();
+            let own = (study.mesh.name.as_str(), warning.as_str());
+            match kinds.iter_mut().find(|(known, _)| *known == kind) {
+                Some((_, meshes)) => meshes.push(own),
+                None => kinds.push((kind, vec![own])),
             }
         }
     }
-    let text = |(_, warning, meshes): (String, &str, Vec<&str>)| match &meshes[..] {
-        [mesh] => format!("{mesh}: {warning}"),
-        [first, others @ ..] => format!(
-            "{first}: {warning} {} similar warnings.",
-            match others.len() {
-                1 => "Another mesh has".to_owned(),
-                n => format!("{n} other meshes have"),
-            }
-        ),
-        [] => warning.to_owned(),
-    };
-    merged.into_iter().map(text).collect()
+    kinds.sort_by_key(|(_, meshes)| Reverse(meshes.len()));
+    let text =
+        |(_, meshes): (String, Vec<(&str, &str)>)| {
+            let (mesh, warning) = meshes.iter().copied().reduce(|worst, own| {
+                match extent(own.1) > extent(worst.1) {
+                    true => own,
+                    false => worst,
+                }
+            })?;
+            Some(match meshes.len() - 1 {
+                0 => format!("{mesh}: {warning}"),
+                1 => format!("{mesh}: {warning} Another mesh has a similar warning."),
+                others => format!("{mesh}: {warning} {others} other meshes have similar warnings."),
+            })
+        };
+    kinds.into_iter().filter_map(text).collect()
+}
+
+/// Returns the first number of a warning, or the share if it is one, such as `130 of 147`.
+fn extent(warning: &str) -> f64 {
+    let words = warning
+        .split(' ')
+        .map(|word| word.trim_end_matches(['.', ',']));
+    let mut numbers = words.filter_map(|word| word.parse::<f64>().ok());
+    let (first, second) = (numbers.next(), numbers.next());
+    let first = first.unwrap_or(0.0);
+    match second.filter(|whole| warning.contains(&format!("{first} of {whole} "))) {
+        Some(whole) => first / whole,
+        None => first,
+    }
 }

@@ -97,7 +97,7 @@ fn ratios_are_geometric_means_over_meshes() {
     let overall = &pool.groups[0].overall;
     let slower = overall.iter().find(|row| row.backend == "half-edge");
     let ends = slower
-        .and_then(Overall::ends_to_first)
+        .and_then(|row| row.to_first()?.ends())
         .expect("three meshes");
     assert!(
         (ends[0] - 2.0).abs() < 1e-9 && (ends[1] - 8.0).abs() < 1e-9,
@@ -437,7 +437,10 @@ fn the_mean_of_two_methods_has_the_interval_of_their_quotient() {
     let ends = |study: &Report| {
         let rows = study.overall();
         assert_eq!(rows[1].backend, "face-vertex");
-        let [low, high] = rows[1].interval_to_first().expect("three launches");
+        let [low, high] = rows[1]
+            .to_first()
+            .and_then(|to_first| to_first.interval)
+            .expect("three launches");
         assert!(low < 2.0 && 2.0 < high, "{low} to {high}");
         (high / low, leaders(&rows).len())
     };
@@ -506,22 +509,41 @@ fn the_leaders_of_means_are_not_slower_than_each_other() {
     let rows = &pool.groups[0].overall;
     let names: Vec<&str> = leaders(rows).iter().map(|row| &*row.backend).collect();
     assert_eq!(names, ["half-edge", "winged-edge"]);
-    let ends = rows[2].ends_to_first().expect("two meshes");
+    let ends = rows[2]
+        .to_first()
+        .and_then(|to_first| to_first.ends())
+        .expect("two meshes");
     assert!(ends[0] < 1.0 && ends[1] > 1.7, "{ends:?}");
 }
 
 #[test]
-fn warnings_that_differ_in_numbers_are_merged() {
-    let mut studies = ["a", "b", "c"].map(|name| ball(name, &[("half-edge", 1.0)]));
-    studies[0].warnings = vec!["Load 2.5 on 2 cores.".into()];
-    studies[1].warnings = vec!["Load 13.1 on 2 cores.".into(), "Other.".into()];
-    studies[2].warnings = vec!["Load 3.1 on 2 cores.".into()];
+fn warnings_of_one_kind_are_merged_and_the_worst_is_shown() {
+    let mut studies = ["a", "b", "c", "d"].map(|name| ball(name, &[("half-edge", 1.0)]));
+    studies[0].warnings = vec!["Other.".into()];
+    studies[1].warnings = vec!["Times differ by 4 %. Worst: x.".into(), "Load 2.5.".into()];
+    studies[2].warnings = vec![
+        "Times differ by 13 %. Worst: y.".into(),
+        "Load 13.1.".into(),
+    ];
+    studies[3].warnings = vec!["Times differ by 9 %. Worst: z.".into()];
     assert_eq!(
         pool_of(&studies).warnings,
         [
-            "a: Load 2.5 on 2 cores. 2 other meshes have similar warnings.",
-            "b: Other."
+            "c: Times differ by 13 %. Worst: y. 2 other meshes have similar warnings.",
+            "c: Load 13.1. Another mesh has a similar warning.",
+            "a: Other."
         ]
+    );
+}
+
+#[test]
+fn a_share_is_worse_than_a_smaller_one_of_more() {
+    let mut studies = ["a", "b"].map(|name| ball(name, &[("half-edge", 1.0)]));
+    studies[0].warnings = vec!["120 of 200 times are wide.".into()];
+    studies[1].warnings = vec!["30 of 40 times are wide.".into()];
+    assert_eq!(
+        pool_of(&studies).warnings,
+        ["b: 30 of 40 times are wide. Another mesh has a similar warning."]
     );
 }
 
@@ -611,5 +633,8 @@ fn ratios_are_quotients_of_shown_times_per_element() {
     let pool = pool_of(&[study, other]);
     let overall = &pool.groups[0].overall;
     assert!((ratio(overall) - 133.0 / 33.3).abs() < 1e-12);
-    assert_eq!(overall[1].ends_to_first(), Some([133.0 / 33.3; 2]));
+    assert_eq!(
+        overall[1].to_first().and_then(|to_first| to_first.ends()),
+        Some([133.0 / 33.3; 2])
+    );
 }

@@ -1,0 +1,243 @@
+//! The times that means are made of: of each task on each mesh, for all compared backends.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use super::means::{confidence, half_width, mean_over_sizes, with_errors};
+use super::{common, decade};
+use crate::findings::pick::EQUAL_UP_TO;
+use crate::findings::study::Report;
+use crate::numbers::shown_ratio;
+use crate::quotient::{Quotient, range};
+use crate::rows::{Agreement, ResultRow, Standing};
+use crate::statistics::geometric_mean;
+
+/// A time in nanoseconds.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'s> {
+    pub(super) row: &'s ResultRow,
+    pub(super) ns: f64,
+    /// The time per element.
+    pub(super) each: f64,
+    /// Whether the time is an estimate: a lower bound.
+    pub(super) bound: bool,
+    /// The half-width of the interval of the logarithm of the ratio to the fastest backend; `None` without
+    /// an interval.
+    log_error: Option<f64>,
+}
+
+impl<'s> Known<'s> {
+    /// Returns the time of a row: measured, or estimated. Returns `None` for other work.
+    fn of(row: &'s ResultRow) -> Option<Self> {
+        let ns = row.median_ns.or(row.estimated_ns)?;
+        let bound = row.median_ns.is_none();
+        let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
+        let interval = row.ratio_ci_low.zip(row.ratio_ci_high);
+        let log_error = match interval {
+            _ if bound || row.ratio_to_best == Some(1.0) => Some(0.0),
+            Some((low, high)) => half_width(low, high),
+            None => None,
+        };
+        let each = ns / row.elements.unwrap_or(1).max(1) as f64;
+        (ns > 0.0 && same_work).then_some(Self {
+            row,
+            ns,
+            each,
+            bound,
+            log_error,
+        })
+    }
+
+    /// Orders measured times before estimates, because the real time may be longer than an estimate.
+    fn measured_first(&self, other: &Self) -> Ordering {
+        let by_time = self.ns.total_cmp(&other.ns);
+        self.bound.cmp(&other.bound).then(by_time)
+    }
+
+    /// Returns the time of a task, which each of `rows` does by another method.
+    fn of_task(rows: impl Iterator<Item = &'s ResultRow>) -> Option<Self> {
+        let methods: Vec<Self> = rows.filter_map(Self::of).collect();
+        let fastest = methods.iter().min_by(|a, b| a.measured_first(b))?;
+        // Another method, of which only a lower bound is known, may be faster.
+        let faster = methods
+            .iter()
+            .filter(|own| own.bound && own.ns < fastest.ns);
+        let least = faster.min_by(|a, b| a.ns.total_cmp(&b.ns));
+        least.or(Some(fastest)).copied()
+    }
+}
+
+/// The rows of several studies, by study, operation and backend.
+pub(super) struct Rows<'s>(Vec<HashMap<(&'s str, &'s str), &'s ResultRow>>);
+
+impl<'s> Rows<'s> {
+    pub(super) fn new(studies: &[&'s Report]) -> Self {
+        let of = |study: &&'s Report| {
+            let rows = study.results.iter();
+            rows.map(|row| ((row.operation.as_str(), row.backend.as_str()), row))
+                .collect()
+        };
+        Self(studies.iter().map(of).collect())
+    }
+}
+
+/// One task on one mesh.
+pub(super) struct Case<'s> {
+    pub(super) mesh: usize,
+    /// The time of each compared backend.
+    pub(super) times: Vec<Known<'s>>,
+    /// The shortest measured time. A lower bound cannot be the shortest time.
+    pub(super) least: Known<'s>,
+}
+
+impl<'s> Case<'s> {
+    /// Returns `None` if no time is measured.
+    fn new(mesh: usize, times: Vec<Known<'s>>) -> Option<Self> {
+        let measured = times.iter().filter(|time| !time.bound);
+        let least = *measured.min_by(|a, b| a.ns.total_cmp(&b.ns))?;
+        Some(Self { mesh, times, least })
+    }
+
+    /// Returns whether the shortest time is known: no lower bound is below the shortest measured time.
+    fn is_decided(&self) -> bool {
+        let mut bounds = self.times.iter().filter(|time| time.bound);
+        bounds.all(|bound| bound.ns >= self.least.ns)
+    }
+}
+
+/// Tasks on meshes, and the backends that are compared: all have a time in each case.
+pub(super) struct Cases<'a, 's> {
+    studies: &'a [&'s Report],
+    pub(super) backends: Vec<&'a str>,
+    pub(super) cases: Vec<Case<'s>>,
+}
+
+impl<'a, 's> Cases<'a, 's> {
+    /// Returns the cases of `tasks`, the names of the operations that do the same work, in which all `backends` with any
+    /// time have one. If they have no case in common, those with the fewest times are left out.
+    pub(super) fn new(
+        studies: &'a [&'s Report],
+        rows: &Rows<'s>,
+        backends: &[&'a str],
+        tasks: &[Vec<&str>],
+    ) -> Self {
+        let on_mesh = |mesh: usize| tasks.iter().map(move |task| (mesh, task));
+        let all: Vec<(usize, &Vec<&str>)> = (0..studies.len()).flat_map(on_mesh).collect();
+        let time = |case: usize, backend: &str| {
+            let (mesh, task) = all[case];
+            let row = |operation: &&str| rows.0[mesh].get(&(*operation, backend)).copied();
+            Known::of_task(task.iter().filter_map(row))
+        };
+        let has = |case: usize, backend: &str| time(case, backend).is_some();
+        let some = |backend: &&&str| (0..all.len()).any(|case| has(case, backend));
+        let backends: Vec<&str> = backends.iter().filter(some).copied().collect();
+        let (backends, shared) = common(&backends, all.len(), has);
+        let cases = shared.into_iter().filter_map(|case| {
+            let times = backends.iter().map(|backend| time(case, backend));
+            Case::new(all[case].0, times.collect::<Option<_>>()?)
+        });
+        let mut cases: Vec<Case<'s>> = cases.collect();
+        // A mean with a case that is not decided would favour the backends that were measured. If no case is decided,
+        // they stay, and the answer names what is not ranked.
+        if cases.iter().any(Case::is_decided) {
+            cases.retain(Case::is_decided);
+        }
+        Self {
+            studies,
+            backends,
+            cases,
+        }
+    }
+
+    /// Returns the meshes with at least one case.
+    pub(super) fn meshes(&self) -> impl Iterator<Item = usize> {
+        let by_mesh = self.cases.chunk_by(|a, b| a.mesh == b.mesh);
+        by_mesh.map(|cases| cases[0].mesh)
+    }
+
+    /// Returns the times of the backend at `place`.
+    pub(super) fn times(&self, place: usize) -> impl Iterator<Item = &Known<'s>> {
+        self.cases.iter().map(move |case| &case.times[place])
+    }
+
+    /// Returns the mean of the ratios of the backend at `place` on each mesh, with the size of the mesh.
+    pub(super) fn by_mesh(&self, place: usize) -> Vec<(u32, f64)> {
+        let by_mesh = self.cases.chunk_by(|a, b| a.mesh == b.mesh);
+        let means = by_mesh.filter_map(|cases| {
+            // The times of each mesh are shown. A reader who divides two of them gets the ratio.
+            let ratio = |case: &Case| shown_ratio(case.times[place].each, case.least.each);
+            let ratios: Vec<f64> = cases.iter().map(ratio).collect();
+            let (mean, _) = geometric_mean(&ratios, confidence(self.studies))?;
+            Some((decade(self.studies[cases[0].mesh]), mean))
+        });
+        means.collect()
+    }
+
+    /// Returns the half-width of the interval of the logarithm of the mean of the backend at `place`, from the intervals
+    /// of the single times. The errors of different operations and meshes are independent.
+    pub(super) fn log_error(&self, place: usize) -> f64 {
+        // Without an interval, a difference on one mesh is clear from a ratio of 2.
+        let unknown = match self.studies {
+            [_] => 2_f64.ln(),
+            _ => 0.0,
+        };
+        let errors = self.times(place).map(|t| t.log_error.unwrap_or(unknown));
+        let squares: f64 = errors.map(|error| error.powi(2)).sum();
+        squares.sqrt() / self.cases.len().max(1) as f64
+    }
+
+    /// Returns the quotient of the means of two backends.
+    pub(super) fn quotient(&self, own: usize, other: usize) -> Quotient {
+        let both = self.by_mesh(own).into_iter().zip(self.by_mesh(other));
+        let on_meshes = both.map(|((size, own), (_, other))| (size, own / other));
+        let on_meshes: Vec<(u32, f64)> = on_meshes.collect();
+        let confidence = confidence(self.studies);
+        let mean = |place| mean_over_sizes(&self.by_mesh(place), confidence);
+        let ratio = mean(own).zip(mean(other));
+        let interval = match self.studies {
+            [study] => self.interval_on_mesh(study, own, other),
+            _ => mean_over_sizes(&on_meshes, confidence).and_then(|(mean, ends)| {
+                let error = self.log_error(own).hypot(self.log_error(other));
+                with_errors(ends, mean, [Some(error)].into_iter())
+            }),
+        };
+        Quotient {
+            ratio: ratio.map_or(f64::NAN, |((own, _), (other, _))| own / other),
+            interval,
+            range: range(on_meshes.iter().map(|(_, ratio)| *ratio)),
+            meshes: on_meshes.len(),
+        }
+    }
+
+    /// Returns the interval of the quotient of two means on one mesh, from those of the quotients of the times, whose
+    /// errors are independent. Two methods of a subdivision scheme may have no launch in common.
+    fn interval_on_mesh(&self, study: &Report, own: usize, other: usize) -> Option<[f64; 2]> {
+        let (mut log, mut squares) = (0.0, 0.0);
+        for case in &self.cases {
+            let (own, other) = (case.times[own].row, case.times[other].row);
+            let quotient = study.quotient_of_rows(own, other)?;
+            let apart = |row: &ResultRow| half_width(row.ci_low_ns?, row.ci_high_ns?);
+            let (centre, error) = match quotient.interval {
+                Some([low, high]) => (f64::sqrt(low * high), half_width(low, high)?),
+                None => (quotient.ratio, apart(own)?.hypot(apart(other)?)),
+            };
+            log += centre.ln();
+            squares += error.powi(2);
+        }
+        let count = self.cases.len() as f64;
+        let (centre, error) = ((log / count).exp(), squares.sqrt() / count);
+        Some([centre * (-error).exp(), centre * error.exp()])
+    }
+
+    /// Returns whether the first of two backends is slower by a clear difference.
+    pub(super) fn is_slower(&self, own: usize, other: usize) -> bool {
+        let quotient = self.quotient(own, other);
+        match quotient.standing() {
+            Some(standing) => standing == Standing::Slower,
+            None => {
+                let error = self.log_error(own).hypot(self.log_error(other));
+                quotient.ratio > error.exp().max(EQUAL_UP_TO)
+            }
+        }
+    }
+}
