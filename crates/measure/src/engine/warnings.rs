@@ -250,7 +250,7 @@ mod tests {
     use crate::Operation;
 
     use super::*;
-    use sixfold_results::{Agreement, ControlRow, Standing};
+    use sixfold_results::{Agreement, ControlRow, HeapReport, Standing};
 
     fn quiet() -> Run {
         let mut run = Run::default();
@@ -285,6 +285,40 @@ mod tests {
         let mut run = quiet();
         change(&mut run.environment);
         run
+    }
+
+    /// Two page faults take about 2 µs.
+    #[test]
+    fn page_faults_are_named_if_they_can_take_a_part_of_the_time() {
+        let heap = HeapReport {
+            policy: Policy::Kept,
+            reason: None,
+            allocator: "glibc 2.36".into(),
+            page_bytes: Some(4096),
+            transparent_huge_pages: None,
+            counts_faults: true,
+        };
+        let kept = with(|environment| environment.heap = Some(heap));
+        let messages = |median_ns: f64, runs_per_sample: u32| {
+            let row = ResultRow {
+                median_ns: Some(median_ns),
+                ci_low_ns: Some(median_ns),
+                ci_high_ns: Some(median_ns),
+                runs_per_sample,
+                faults: Some(2),
+                ..fine()
+            };
+            warnings(&kept, &TIMER, &[&row, &fine()], &[], None).join(" ")
+        };
+        let seen = messages(190_000.0, 1);
+        assert!(
+            seen.contains("1 of 2 figures include samples with page faults"),
+            "{seen}"
+        );
+        for (median_ns, runs) in [(210_000.0, 1), (105_000.0, 2)] {
+            let unseen = messages(median_ns, runs);
+            assert!(!unseen.contains("page faults"), "{unseen}");
+        }
     }
 
     /// Returns six samples without disturbances.
