@@ -100,7 +100,6 @@ class Page:
         return self
 
     def check_operations(self, table):
-        is_mean = "Geometric mean" in text(table)
         [head] = find(table, "thead")
         backends = [text(cell) for cell in find(head, "th")][1:]
         [body] = find(table, "tbody")
@@ -112,31 +111,35 @@ class Page:
             best = [cell for cell in cells if cell.ratio == 1 and not cell.is_bound]
             for place, (backend, cell) in enumerate(zip(backends, cells)):
                 where = f"{name} on {backend}"
-                self.check_cell(where, cell, best, is_mean)
+                self.check_cell(where, cell, best)
                 if cell.ratio is not None:
                     self.expect(heat.get((name, backend)) == (cell.mark, cell.shown), f"{where}: {heat.get((name, backend))} in the heat map, {cell.mark, cell.shown} in the table")
-                if name == "build" and not is_mean and backend in summary and cell.ratio is not None:
+                if name == "build" and backend in summary and cell.ratio is not None:
                     self.expect(summary[backend] == (cell.mark, cell.shown), f"{where}: {summary[backend]} on the first screen, {cell.mark, cell.shown} in the table")
-                # The mean of the ratios to the fastest of each mesh is that to one backend only if this is always the fastest.
-                if best and cell.quotients and best[0].is_exactly_1:
+                if best and cell.quotients:
                     first = backends[cells.index(best[0])]
                     ratio, *ends = cell.quotients[backends.index(first)].split(" ")
                     self.expect(ratio == cell.figure, f"{where}: {cell.figure} × the fastest, but {ratio} × {first}")
-                    if not is_mean and cell is not best[0]:
+                    if cell is not best[0] and not cell.is_bound:
                         self.expect(" to ".join(ends) == cell.ends, f"{where}: {cell.ends}, but {ends} with {first}")
                 for other, there in zip(backends, cell.quotients):
-                    back = cells[backends.index(other)].quotients
+                    compared = cells[backends.index(other)]
+                    if there and not cell.is_bound and not compared.is_bound:
+                        quotient = shown_time(cell.time) / shown_time(compared.time)
+                        shown = number(there.split(" ")[0])
+                        self.expect(is_near(quotient, shown), f"{where}: {shown} × {other}, but {quotient:.4g} by their times")
+                    back = compared.quotients
                     if there and back and back[place] and not cell.is_bound:
                         product = number(there.split(" ")[0]) * number(back[place].split(" ")[0])
                         self.expect(is_near(product, 1, 2 * ROUNDING), f"{where}: {there} × {other}, but {back[place]} back")
 
-    def check_cell(self, where, cell, best, is_mean):
+    def check_cell(self, where, cell, best):
         if cell.ratio is None:
             return
         if cell.ends:
             low, high = map(number, cell.ends.split(" to "))
             self.expect(low <= cell.ratio <= high, f"{where}: {cell.figure} is not between {cell.ends}")
-        if best and not is_mean:
+        if best:
             quotient = shown_time(cell.time) / shown_time(best[0].time)
             below = 0.011 if cell.is_bound else ROUNDING
             holds = is_near(quotient, cell.ratio, below)
@@ -185,7 +188,6 @@ class Cell:
             shown = shown.replace(part, "").strip()
         self.shown = shown
         self.is_bound = "bound" in data["class"].split(" ")
-        self.is_exactly_1 = data.get("data-ratio") == "1.0000e0"
         self.time = data.get("data-time")
         self.quotients = data.get("data-to", "").split("|") if data.get("data-to") else []
         has_ratio = shown.endswith("×")

@@ -4,7 +4,7 @@ use sixfold_results::numbers::{duration, figure, rounded_down};
 use sixfold_results::{
     Confidence, FEWEST_MESHES, FIRST_TIME_SHOWN, OperationGroup, OperationInfo, Overall, Pool,
     Pooled, Purpose, Quotient, RefusalKind, Report, ResultRow, Samples, Standing, mean_quotients,
-    operations, range,
+    operations,
 };
 
 use crate::figure::Table;
@@ -43,11 +43,14 @@ pub(crate) struct Cell {
     pub(crate) standing: Option<Standing>,
     /// Number of samples; 0 for a mean over meshes.
     pub(crate) samples: usize,
+    /// True if each sample is the first run of a launch.
+    pub(crate) first_runs: bool,
     /// Why there is no figure, or a remark on the figure.
     pub(crate) remark: Option<String>,
     /// The ratio on each mesh, if `ratio` is a mean over meshes.
     pub(crate) each: Vec<f64>,
-    /// The times per element of all samples in nanoseconds, by launch; empty for a mean over meshes.
+    /// The times per element of all samples in nanoseconds, by launch, of which some have none; empty for a mean over
+    /// meshes.
     pub(crate) launches: Vec<Vec<f64>>,
     /// The quotients of this time and that of each backend of the matrix, in its order.
     pub(crate) quotients: Vec<Option<Quotient>>,
@@ -111,6 +114,7 @@ impl Cell {
             first_ns: None,
             standing: None,
             samples: 0,
+            first_runs: false,
             remark: None,
             each: Vec::new(),
             launches: Vec::new(),
@@ -225,6 +229,7 @@ impl Cell {
             first_ns: first_time(row),
             standing: row.standing,
             samples: row.samples,
+            first_runs: row.warm_up_only,
             launches: launches(study, row),
             remark: ratio
                 .is_none()
@@ -254,14 +259,14 @@ impl Cell {
 
     /// Returns the cell of a mean over meshes. `each` has the ratio on each mesh.
     fn of_pool(row: &Pooled, each: Vec<f64>) -> Self {
-        let (source, range) = match row.estimated {
-            0 => (Source::Measured, range(each.iter().copied())),
-            _ => (Source::Bound, None),
+        let source = match row.estimated {
+            0 => Source::Measured,
+            _ => Source::Bound,
         };
         let interval = row.ci_low.zip(row.ci_high).map(Into::into);
         Self {
             ratio: Some(row.ratio_to_best),
-            interval: interval.or(range),
+            interval: interval.or(row.range),
             each,
             ns: row.ns_per_element,
             remark: Some(format!(
@@ -310,9 +315,8 @@ fn launches(study: &Report, row: &ResultRow) -> Vec<Vec<f64>> {
     };
     let launches = (0..row.launch_ns.len().max(1)).map(of_launch);
     let each = |ns: f64| ns / elements as f64;
-    let launches = launches.map(|launch| launch.into_iter().map(each).collect());
     launches
-        .filter(|launch: &Vec<f64>| !launch.is_empty())
+        .map(|launch| launch.into_iter().map(each).collect())
         .collect()
 }
 
@@ -374,13 +378,16 @@ impl Matrix {
             let rows: Vec<&Pooled> = rows.collect();
             rows.first()?;
             let quotients = mean_quotients(studies, operation, &backends);
+            let first = rows.iter().filter(|row| row.estimated == 0);
+            let first = first.min_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
+            let first = first.map_or("", |row| &row.backend);
             let cell = |(name, quotients): (&String, _)| match rows
                 .iter()
                 .find(|row| row.backend == *name)
             {
                 Some(row) => Cell {
                     quotients,
-                    ..Cell::of_pool(row, ratios(studies, operation, name))
+                    ..Cell::of_pool(row, ratios(studies, operation, [name, first]))
                 },
                 None => Cell::new(name, without_time(studies, operation, name)),
             };
@@ -475,10 +482,11 @@ pub(crate) fn likely_first<T>(backends: &mut [T], overall: &[Overall], name: imp
     });
 }
 
-/// Returns the measured ratios of one backend to the fastest of each mesh.
-fn ratios(studies: &[&Report], operation: &str, backend: &str) -> Vec<f64> {
-    let ratio = |study: &&Report| study.shown_ratio(study.row(operation, backend)?);
-    studies.iter().filter_map(ratio).collect()
+/// Returns the measured ratios of one backend to another one on each mesh.
+fn ratios(studies: &[&Report], operation: &str, [own, other]: [&str; 2]) -> Vec<f64> {
+    let quotient = |study: &&Report| study.quotient(operation, own, other);
+    let quotients = studies.iter().filter_map(quotient);
+    quotients.map(|quotient| quotient.ratio).collect()
 }
 
 /// Returns the operations, those of a group one after the other.

@@ -333,7 +333,7 @@ fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<Summary
         false => Rank::Other,
     };
     let ratio = row.ratio_to_best / rows[0].ratio_to_best;
-    let interval = row.to_first().and_then(|to_first| to_first.ends());
+    let interval = row.ends();
     let interval = interval.filter(|ends| row.meshes > 1 || is_known(ends));
     let text = row.times(&rows[0]);
     Some(SummaryFigure::ratio(ratio, interval, rank, text))
@@ -513,12 +513,11 @@ fn fastest(
         };
         let next = next_best(rows).zip(next_row(rows));
         let next = next.map_or(String::new(), |((next, ratio), row)| {
-            let to_first = row.to_first();
-            let interval = to_first.and_then(|to_first| to_first.ends());
+            let interval = row.ends();
             let interval = interval.filter(|ends| row.meshes > 1 || is_known(ends));
             let interval = interval.map(|ends| ends.map(figure));
             let interval = interval.filter(|[low, high]| low != high);
-            let of_which = match (row.meshes, to_first.and_then(|to_first| to_first.interval)) {
+            let of_which = match (row.meshes, row.ci_low) {
                 (1, _) => "",
                 (_, Some(_)) => " on other such meshes",
                 (_, None) => " on the meshes",

@@ -41,9 +41,10 @@ struct SampleRow<'r> {
     operation: &'r str,
     backend: &'r str,
     launch: u32,
-    round: u32,
+    first_run: bool,
+    round: Option<u32>,
     cpu_ns: Option<f64>,
-    wall_ns: f64,
+    wall_ns: Option<f64>,
     faults: Option<u64>,
     slowdown: Option<f64>,
 }
@@ -61,8 +62,8 @@ impl Results {
         })
     }
 
-    /// Writes the samples as CSV: a header, and one row for each sample. The samples of the second
-    /// measurement of the control are left out.
+    /// Writes the samples as CSV: a header, and one row for each sample. A launch that had only time for the first run of
+    /// an operation has a row for this run. The samples of the second measurement of the control are left out.
     ///
     /// # Errors
     ///
@@ -154,21 +155,51 @@ fn time_row<'r>(kind: &'r str, figure: &Figure<'r>) -> TimeRow<'r> {
 }
 
 fn sample_rows<'r>(kind: &'r str, figure: &'r Figure<'_>) -> impl Iterator<Item = SampleRow<'r>> {
-    figure.samples.into_iter().flat_map(move |samples| {
+    let row = move || SampleRow {
+        mesh: mesh_name(figure),
+        kind,
+        case: &figure.row.case,
+        operation: &figure.row.operation,
+        backend: &figure.row.backend,
+        ..SampleRow::default()
+    };
+    let sampled = figure.samples.into_iter().flat_map(move |samples| {
         (0..samples.wall_ns.len()).map(move |i| SampleRow {
-            mesh: mesh_name(figure),
-            kind,
-            case: &figure.row.case,
-            operation: &figure.row.operation,
-            backend: &figure.row.backend,
             launch: samples.launches.get(i).copied().unwrap_or(0),
-            round: samples.rounds[i],
+            round: Some(samples.rounds[i]),
             cpu_ns: samples.cpu_ns.as_ref().map(|all| all[i]),
-            wall_ns: samples.wall_ns[i],
+            wall_ns: Some(samples.wall_ns[i]),
             faults: samples.faults.as_ref().map(|all| all[i]),
             slowdown: samples.slowdowns.get(i).copied(),
+            ..row()
         })
-    })
+    });
+    let first_runs = first_runs(figure).map(move |(launch, ns)| SampleRow {
+        launch,
+        first_run: true,
+        cpu_ns: Some(ns),
+        ..row()
+    });
+    sampled.chain(first_runs)
+}
+
+/// Returns the times of the launches that had only time for the first run, with the numbers of the launches.
+fn first_runs<'r>(figure: &'r Figure<'_>) -> impl Iterator<Item = (u32, f64)> + use<'r> {
+    let row = &figure.row;
+    let only = row
+        .median_ns
+        .filter(|_| row.warm_up_only && row.launch_ns.is_empty());
+    let launches = (0..).zip(&row.launch_ns);
+    let launches = launches.filter_map(|(launch, ns)| Some((launch, (*ns)?)));
+    let has_samples = move |launch: u32| {
+        let mut samples = figure.samples.into_iter();
+        samples.any(|samples| match samples.launches.is_empty() {
+            true => !samples.wall_ns.is_empty(),
+            false => samples.launches.contains(&launch),
+        })
+    };
+    let all = only.map(|ns| (0, ns)).into_iter().chain(launches);
+    all.filter(move |(launch, _)| !has_samples(*launch))
 }
 
 /// Returns the I/O error inside a CSV error, so that a closed pipe can be detected.

@@ -74,10 +74,10 @@ pub use json::write_json;
 pub use merge::MergeError;
 pub use operation::{OperationGroup, OperationInfo, Purpose};
 pub use pool::{
-    FEWEST_MESHES, Group, Holding, Overall, Pool, Pooled, leaders, next_best, next_row, not_ranked,
-    operations, overall,
+    FEWEST_MESHES, Group, Holding, Overall, Pool, Pooled, leaders, mean_quotients, next_best,
+    next_row, not_ranked, operations, overall,
 };
-pub use quotient::{Quotient, mean_quotients, range};
+pub use quotient::Quotient;
 pub use read::ReadError;
 pub use rows::{
     Agreement, BackendRefusal, BackendReport, Control, ControlRow, ExternalReport,

@@ -17,10 +17,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::findings::study::Report;
 use crate::operation::Purpose;
-use crate::quotient::Quotient;
 use means::pooled;
-pub use means::{FEWEST_MESHES, operations, overall};
-pub(crate) use means::{confidence, half_width, mean_over_sizes, with_errors};
+pub use means::{FEWEST_MESHES, mean_quotients, operations, overall};
 use sentences::warnings;
 pub use sentences::{leaders, next_best, next_row, not_ranked};
 
@@ -80,14 +78,18 @@ pub struct Overall {
     /// The number of cases in the mean: of operations on a mesh. The methods of a subdivision scheme
     /// are one case.
     pub cases: usize,
-    /// The time of this backend divided by the time of the fastest measured backend, as the geometric
-    /// mean over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
-    /// 9,999 faces) has the same weight in the mean.
+    /// The mean time of this backend divided by that of the fastest backend, which has the smallest mean without a lower
+    /// bound: geometric means over meshes and operations of the time relative to the fastest of the case. Each range of mesh
+    /// sizes (such as 100 to 999 faces or 1,000 to 9,999 faces) has the same weight in the mean.
     pub ratio_to_best: f64,
-    /// Lower end of the confidence interval of `ratio_to_best`; `None` with fewer than six meshes.
+    /// Lower end of the confidence interval of `ratio_to_best`; `None` for the fastest and for lower bounds, on several
+    /// meshes if they are fewer than six, and on one mesh if a time has none.
     pub ci_low: Option<f64>,
     /// Upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
+    /// The least and the largest of these ratios on a mesh; `None` on one mesh.
+    #[serde(skip)]
+    pub range: Option<[f64; 2]>,
     /// True if the mean includes estimated times. Estimates are lower bounds, so the mean is one too,
     /// and has no interval.
     pub bound: bool,
@@ -103,9 +105,6 @@ pub struct Overall {
     /// Whether no other backend is faster by a clear difference.
     #[serde(skip)]
     pub(crate) leads: bool,
-    /// The mean time divided by that of the fastest backend on average; `None` for this backend, and for lower bounds.
-    #[serde(skip)]
-    pub(crate) to_first: Option<Quotient>,
 }
 
 /// The results of one operation on one backend, over several meshes.
@@ -124,14 +123,17 @@ pub struct Pooled {
     /// Number of meshes on which the time is an estimate, because a real run would exceed the time
     /// budget. If there are any, `ratio_to_best` and `ns_per_element` are lower bounds.
     pub estimated: usize,
-    /// The time of this backend divided by the time of the fastest measured backend, as the geometric
-    /// mean over the meshes. Each range of mesh sizes has the same weight, as in [`Overall`].
+    /// `ns_per_element` of this backend divided by that of the fastest backend, which has the smallest mean without a lower
+    /// bound; both as they are shown, with three digits. Each range of mesh sizes has the same weight, as in [`Overall`].
     pub ratio_to_best: f64,
-    /// Lower end of the confidence interval of `ratio_to_best`, at least 1; `None` with fewer
-    /// than six meshes, or if the mean is a lower bound.
+    /// Lower end of the confidence interval of `ratio_to_best`; `None` for the fastest, with fewer than six meshes, or if the
+    /// mean is a lower bound.
     pub ci_low: Option<f64>,
     /// Upper end of the confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
+    /// The least and the largest of these ratios on a mesh.
+    #[serde(skip)]
+    pub range: Option<[f64; 2]>,
     /// The time per element in nanoseconds, as the geometric mean over the meshes.
     pub ns_per_element: Option<f64>,
 }
@@ -276,10 +278,11 @@ impl Purpose {
 }
 
 impl Overall {
-    /// Returns the mean time divided by that of the backend that is fastest on average. `None` for this backend, and for
-    /// lower bounds. It has no interval on several meshes if they are fewer than six, and on one mesh if a time has none.
-    pub fn to_first(&self) -> Option<Quotient> {
-        self.to_first
+    /// Returns the ends that the mean is shown with: of its interval, or of its range if the meshes are too few for an
+    /// interval.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        let interval = self.ci_low.zip(self.ci_high).map(Into::into);
+        interval.or(self.range)
     }
 
     /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a

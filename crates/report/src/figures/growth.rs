@@ -1,7 +1,7 @@
 //! Figures of the growth of times with the size of the mesh. On logarithmic axes, the slope of a
 //! line is the exponent of growth.
 
-use sixfold_results::numbers::{bytes, duration, grouped};
+use sixfold_results::numbers::{duration, grouped};
 use sixfold_results::{CacheLimit, Fit, GrowthReport, OperationInfo, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};
@@ -57,13 +57,28 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
         add_times_and_slopes(&mut table, &report.sizes, operation, &fits);
     }
     let title = format!("Total time as the mesh grows: {}", report.shape);
-    let limit = last_cache(report).map_or(String::new(), |limit| {
+    let largest = report.sizes.iter().map(|size| size.faces).max();
+    let exceeded = last_cache(report).filter(|last| {
+        let mut limits = report.cache_limits.iter();
+        limits.any(|limit| limit.level == last.level && Some(limit.faces) <= largest)
+    });
+    let limit = exceeded.map_or(String::new(), |limit| {
         format!(
-            " A ring marks the size from which a structure is larger than the last cache (L{}, {}).",
+            " A ring marks the size from which a structure is larger than the last cache (L{}, {} MiB).",
             limit.level,
-            bytes(limit.cache_bytes as usize)
+            grouped(limit.cache_bytes as usize >> 20)
         )
     });
+    let slopes = match exceeded {
+        Some(_) => {
+            "the slopes for all sizes, for the sizes that fit into the last cache, and for the larger sizes"
+        }
+        None => "the slopes for all sizes, which fit into the last cache",
+    };
+    let slopes = match last_cache(report) {
+        Some(_) => slopes,
+        None => "the slopes",
+    };
     Some(Figure {
         id: id.into(),
         picture: Picture::grid(&title, COLUMNS, panels),
@@ -72,8 +87,7 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
             "The meshes are made by Sixfold (the shape {}), not read from a file. Both axes are logarithmic and the same in all panels, so a straight line is a power of the \
              number of faces. The number at each name is the exponent: at 1, the time per element \
              is constant; at 2, each element takes a scan of all faces.{limit} Lower bounds (≥ in the table) are \
-             not drawn. An open point, or ~: measured on a sample of the elements. The table has the times per element, and the slopes for all sizes, for the sizes that fit \
-             into the last cache, and for the larger sizes.",
+             not drawn. An open point, or ~: measured on a sample of the elements. The table has the times per element, and {slopes}.",
             report.shape
         ),
         table: table.unwrap_or_default(),

@@ -169,7 +169,7 @@ fn figures(pool: &Pool, meshes: &[Mesh<'_>], matrix: &Matrix, command: &str) -> 
 
 /// Returns the rankings of all operations.
 fn rankings(pool: &Pool, matrix: &Matrix, command: &str) -> Option<Figure> {
-    let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of each mesh.";
+    let note = "A ratio is the quotient of two means: geometric means of the times on the meshes.";
     let figure = ranking::from_matrix(matrix, note, command)?;
     Some(figure.with_csv(rows::pooled(pool)))
 }

@@ -19,6 +19,8 @@ use crate::matrix::{Cell, Matrix, Source};
 /// Longest ratio that is drawn to scale: of a bar, and of a mean over meshes with its dots.
 const LONGEST: f64 = 10.0;
 const LONGEST_MEAN: f64 = 1000.0;
+/// Shortest ratio of a mesh that is drawn to scale.
+const SHORTEST_MEAN: f64 = 0.1;
 /// Height of a bar.
 const HEIGHT: f64 = 13.0;
 /// Width and height of a panel without its bars, and height of a bar with its gap.
@@ -183,8 +185,14 @@ fn figure(
     let ratios = panels.iter().flat_map(|panel| &panel.cells);
     let longest = ratios.filter_map(|cell| cell.ratio).fold(2.0, f64::max);
     let most_drawn = reach(panels.iter().flat_map(|panel| &panel.cells));
+    // On a mesh, another one may be faster than the fastest on average.
+    let each = panels
+        .iter()
+        .flat_map(|panel| &panel.cells)
+        .flat_map(|cell| &cell.each);
+    let shortest = each.copied().fold(1.0, f64::min);
     let scale = LogScale {
-        values: [1.0, longest.min(most_drawn)],
+        values: [shortest.max(SHORTEST_MEAN), longest.min(most_drawn)],
         pixels: BARS,
     };
     for panel in panels {
@@ -238,11 +246,13 @@ fn caption(cells: &[&Cell], note: &str, confidence: Confidence) -> String {
     let has = |test: fn(&Cell) -> bool| cells.iter().any(|cell| cell.ratio.is_some() && test(cell));
     let means = has(|cell| !cell.each.is_empty());
     let mark = match means {
-        true => "The upright line is the time divided by that of the fastest",
-        false => "A bar is the time divided by that of the fastest",
+        true => {
+            "The upright line is the mean time divided by that of the fastest on average, on a logarithmic scale"
+        }
+        false => "A bar is the time divided by that of the fastest, on a logarithmic scale from 1",
     };
     let parts = [
-        (true, format!("{mark}, on a logarithmic scale from 1, which is the same in all panels: longer is slower.")),
+        (true, format!("{mark}, which is the same in all panels: longer is slower.")),
         (!note.is_empty(), note.to_owned()),
         (means, "Each dot is one mesh.".into()),
         (
@@ -301,7 +311,12 @@ fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Ca
     canvas.text([0.0, 14.0], panel.title, Style::new(14).bold(true));
     let best = cells.first().filter(|cell| cell.ratio.is_some());
     let best = best.map_or(String::new(), |best| {
-        format!("fastest: {} {}", best.time_text(), per_unit(panel.unit))
+        let what = if best.each.is_empty() {
+            "fastest"
+        } else {
+            "fastest on average"
+        };
+        format!("{what}: {} {}", best.time_text(), per_unit(panel.unit))
     });
     let faint = Style::new(12).colour(FAINT_COLOUR);
     canvas.text([0.0, 31.0], &best, faint);
@@ -403,8 +418,13 @@ fn spread(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64) {
 /// Returns the text that a browser shows for a bar.
 fn mark_title(cell: &Cell, unit: &str) -> String {
     let interval = cell.interval_text().map(|text| format!(" ({text})"));
+    let fastest = if cell.each.is_empty() {
+        "the fastest"
+    } else {
+        "the fastest on average"
+    };
     format!(
-        "{}: {}{} × the time of the fastest, {} {}",
+        "{}: {}{} × {fastest}, {} {}",
         cell.backend,
         cell.ratio_text(),
         interval.unwrap_or_default(),

@@ -52,7 +52,10 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
         ratio: ratio && Number(ratio),
         // The ratio to each backend and the ends of its interval, as they are shown.
         quotients: to.split('|').map((quotient) => quotient.split(' ')),
-        samples: launches.map((launch) => launch.split(',').map((longer) => shortest * (1 + longer / 1000))),
+        // The samples of each launch that has some, with its number.
+        samples: launches.map((launch, number) => ({number,
+          times: launch === '-' ? [] : launch.split(',').map((longer) => shortest * (1 + longer / 1000))}))
+          .filter(({times}) => times.length),
         plain: {html: cell.innerHTML, classes: cell.className, style: cell.style.cssText}, shown: null,
       };
     }),
@@ -135,8 +138,8 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
   const NAMES = 130, LENGTH = Math.min(560, Math.max(160, innerWidth - NAMES - 70)), LAUNCH = 6, TOP = 22;
   const samplesOf = ({name, cells}) => {
     const known = cells.filter(({samples}) => samples.length).map(({backend, samples}) => {
-      const all = samples.flat();
-      return {backend, samples, least: Math.min(...all), most: Math.max(...all)};
+      const all = samples.flatMap(({times}) => times);
+      return {backend, samples, all, least: Math.min(...all), most: Math.max(...all)};
     });
     const least = Math.min(...known.map((column) => column.least));
     const isNear = (column) => column.least <= 10 * least;
@@ -144,15 +147,15 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
     const across = (ns) => (NAMES + LENGTH * Math.log(ns / least) / Math.log(most / least)).toFixed(1);
     let y = TOP;
     const lines = known.map((column) => {
-      const {backend, samples} = column;
+      const {backend, samples, all} = column;
       const range = (times) => `${duration(Math.min(...times))} to ${duration(Math.max(...times))}`;
       const height = isNear(column) ? Math.max(16, samples.length * LAUNCH + 8) : 18;
       const middle = y + (height - 8) / 2 + 4;
       const marks = isNear(column)
-        ? samples.map((launch, nth) => `<path stroke="var(--link)" stroke-width="2" stroke-opacity=".6" d="${launch.map((ns) =>
-          `M${across(ns)} ${y + nth * LAUNCH}v${LAUNCH - 1}`).join('')}"><title>${backend}, launch ${nth + 1}: ${
-          launch.length} samples, ${range(launch)}</title></path>`).join('')
-        : `<text x="${NAMES + LENGTH}" y="${middle}" text-anchor="end">beyond: ${range(samples.flat())} →</text>`;
+        ? samples.map(({number, times}, nth) => `<path stroke="var(--link)" stroke-width="2" stroke-opacity=".6" d="${times.map((ns) =>
+          `M${across(ns)} ${y + nth * LAUNCH}v${LAUNCH - 1}`).join('')}"><title>${backend}, launch ${number}: ${
+          times.length} ${times.length === 1 ? 'sample' : 'samples'}, ${range(times)}</title></path>`).join('')
+        : `<text x="${NAMES + LENGTH}" y="${middle}" text-anchor="end">beyond: ${range(all)} →</text>`;
       y += height;
       return `<text x="${NAMES - 8}" y="${middle}" text-anchor="end">${backend}</text>${marks}`;
     });

@@ -105,7 +105,7 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         .lines
         .iter()
         .flat_map(|line| &line.cells)
-        .any(|cell| !cell.launches.is_empty());
+        .any(has_samples_text);
     let is_mean = matrix.meshes > 1;
     let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
     let has_undecided = !is_mean && cells.any(|cell| cell.standing == Some(Standing::Undecided));
@@ -145,8 +145,9 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
                 caption {
                     span {
                         span.reading data-time=(time) data-ends=(ends) {
-                            (time) " divided by that of the fastest" @if is_mean { " of each mesh" } ", with " (ends) "."
+                            (time) " divided by that of the fastest" @if is_mean { " on average" } ", with " (ends) "."
                         }
+                        " A ratio is the quotient of the two times with three digits, as they are shown."
                         " A dot is a ratio on a logarithmic scale "
                         span.scale { "from 1 to 10" }
                         ", the line is between these ends; an arrow is beyond."
@@ -184,6 +185,7 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     };
     let samples = match cell.samples {
         0 => String::new(),
+        count if cell.first_runs => counted(count, "first run", "first runs"),
         count => counted(count, "sample", "samples"),
     };
     let title = [
@@ -207,7 +209,7 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
             data-sign=[sign] data-time=[time] data-ends=[ends] data-ns=[times_of_dot(cell)]
             data-ratio=[cell.ratio.map(|ratio| format!("{ratio:.4e}"))]
             data-to=[cell.ns.map(|_| quotients(line, cell))]
-            data-samples=[(!cell.launches.is_empty()).then(|| samples_text(cell))]
+            data-samples=[has_samples_text(cell).then(|| samples_text(cell))]
         {
             @match cell.ratio {
                 Some(_) => {
@@ -229,8 +231,12 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     }
 }
 
+fn has_samples_text(cell: &Cell) -> bool {
+    cell.launches.iter().any(|launch| !launch.is_empty())
+}
+
 /// Returns the samples of a cell: the shortest time per element, and for each launch how many thousandths longer each
-/// sample took, such as `5.56 0,12,7 3,4`.
+/// sample took, such as `5.56 0,12,7 - 3,4` with a launch without samples.
 fn samples_text(cell: &Cell) -> String {
     let times = cell.launches.iter().flatten();
     let shortest = times.copied().fold(f64::INFINITY, f64::min);
@@ -238,10 +244,16 @@ fn samples_text(cell: &Cell) -> String {
         let longer = launch
             .iter()
             .map(|ns| (1e3 * (ns / shortest - 1.0)).round().to_string());
-        longer.collect::<Vec<_>>().join(",")
+        match launch.is_empty() {
+            true => "-".to_owned(),
+            false => longer.collect::<Vec<_>>().join(","),
+        }
     });
     let launches: Vec<String> = launches.collect();
-    format!("{shortest:.5e} {}", launches.join(" "))
+    format!(
+        "{shortest:.5e} {}",
+        launches.join(" ").trim_end_matches(" -")
+    )
 }
 
 /// Returns the time of a cell and the ends of its interval in nanoseconds, for the place of its dot.

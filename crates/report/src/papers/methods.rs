@@ -464,7 +464,7 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
     }
     if results.studies().count() > 1 {
         sentences.push(
-            "Means over the meshes are geometric means of the time relative to the fastest backend of each mesh; each \
+            "Means over the meshes are geometric means, and their ratios are relative to the smallest mean; each \
              power of ten of the number of faces has equal weight. Their intervals come from the variation of the logarithms from \
              mesh to mesh by Student's distribution, for six or more meshes; where the intervals of the single meshes give a \
              wider one, it is used. With fewer meshes, the least and the largest ratio of a mesh are given, and a mean is the \

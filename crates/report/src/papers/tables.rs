@@ -304,7 +304,7 @@ fn means(pool: &Pool, studies: &[&Report]) -> PaperTable {
     PaperTable {
         label: "means".into(),
         caption: format!(
-            "Means over {}. Geometric means over the meshes of the time relative to the fastest backend of the mesh; in \
+            "Means over {}. Geometric means over the meshes of the time, relative to the smallest mean of the row; in \
              brackets {}. Each power of ten of the number of faces has the same weight. Bold: the \
              smallest mean, if every other backend is slower {decided}. Italic: undecided, perhaps the smallest mean. ≥: lower bound, because a run on a mesh would exceed the budget. \
              –: not measured.{}",

@@ -536,7 +536,11 @@ fn the_answer_over_many_meshes_counts_them_by_size_and_kind() {
     assert!(single.overview.rows.is_empty());
     // A mean over meshes is not a ratio of times of the same rounds.
     let ranking = figure_by_id(&page, "rankings");
-    assert!(ranking.caption.contains("geometric mean over the meshes"));
+    assert!(
+        ranking
+            .caption
+            .contains("geometric means of the times on the meshes")
+    );
 }
 
 /// Each mesh has a dot in each line, a row that links to its section, and the sections have no figures if

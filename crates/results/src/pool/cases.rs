@@ -71,9 +71,11 @@ impl<'s> Known<'s> {
 pub(super) struct Rows<'s>(Vec<HashMap<(&'s str, &'s str), &'s ResultRow>>);
 
 impl<'s> Rows<'s> {
-    pub(super) fn new(studies: &[&'s Report]) -> Self {
+    /// Returns the rows of the operations that are wanted.
+    pub(super) fn new(studies: &[&'s Report], is_wanted: impl Fn(&str) -> bool) -> Self {
         let of = |study: &&'s Report| {
             let rows = study.results.iter();
+            let rows = rows.filter(|row| is_wanted(&row.operation));
             rows.map(|row| ((row.operation.as_str(), row.backend.as_str()), row))
                 .collect()
         };
@@ -110,6 +112,8 @@ pub(super) struct Cases<'a, 's> {
     studies: &'a [&'s Report],
     pub(super) backends: Vec<&'a str>,
     pub(super) cases: Vec<Case<'s>>,
+    /// Whether all cases are of one operation, so that means are times per element and not ratios.
+    is_single: bool,
 }
 
 impl<'a, 's> Cases<'a, 's> {
@@ -146,6 +150,7 @@ impl<'a, 's> Cases<'a, 's> {
             studies,
             backends,
             cases,
+            is_single: matches!(tasks, [task] if task.len() == 1),
         }
     }
 
@@ -155,22 +160,58 @@ impl<'a, 's> Cases<'a, 's> {
         by_mesh.map(|cases| cases[0].mesh)
     }
 
+    /// Returns the place of the backend with the smallest mean; `None` if all have a lower bound.
+    pub(super) fn first(&self) -> Option<usize> {
+        let measured = (0..self.backends.len()).filter(|&place| !self.has_bound(place));
+        let means = measured.filter_map(|place| Some((place, self.mean(place)?)));
+        let first = means.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        first.map(|(place, _)| place)
+    }
+
+    /// Returns whether a time of the backend at `place` is a lower bound.
+    pub(super) fn has_bound(&self, place: usize) -> bool {
+        self.times(place).any(|time| time.bound)
+    }
+
     /// Returns the times of the backend at `place`.
     pub(super) fn times(&self, place: usize) -> impl Iterator<Item = &Known<'s>> {
         self.cases.iter().map(move |case| &case.times[place])
     }
 
-    /// Returns the mean of the ratios of the backend at `place` on each mesh, with the size of the mesh.
-    pub(super) fn by_mesh(&self, place: usize) -> Vec<(u32, f64)> {
+    /// Returns the means of `value` on each mesh, with the size of the mesh. `value` gets a case, and returns one of its
+    /// times.
+    fn means(&self, value: impl Fn(&Case<'s>) -> Known<'s>) -> Vec<(u32, f64)> {
         let by_mesh = self.cases.chunk_by(|a, b| a.mesh == b.mesh);
         let means = by_mesh.filter_map(|cases| {
-            // The times of each mesh are shown. A reader who divides two of them gets the ratio.
-            let ratio = |case: &Case| shown_ratio(case.times[place].each, case.least.each);
-            let ratios: Vec<f64> = cases.iter().map(ratio).collect();
-            let (mean, _) = geometric_mean(&ratios, confidence(self.studies))?;
+            let part = |case: &Case<'s>| match self.is_single {
+                true => value(case).each,
+                // The times of each mesh are shown. A reader who divides two of them gets the ratio.
+                false => shown_ratio(value(case).each, case.least.each),
+            };
+            let parts: Vec<f64> = cases.iter().map(part).collect();
+            let (mean, _) = geometric_mean(&parts, confidence(self.studies))?;
             Some((decade(self.studies[cases[0].mesh]), mean))
         });
         means.collect()
+    }
+
+    /// Returns the mean of the backend at `place`: of its times per element if all cases are of one operation, else of the
+    /// ratios to the shortest time of each case.
+    pub(super) fn mean(&self, place: usize) -> Option<f64> {
+        let means = self.means(|case| case.times[place]);
+        Some(mean_over_sizes(&means, confidence(self.studies))?.0)
+    }
+
+    /// Returns the mean that the others are divided by: of the first backend, or, if all have a lower bound, of the shortest
+    /// times.
+    pub(super) fn base(&self) -> Option<f64> {
+        match self.first() {
+            Some(first) => self.mean(first),
+            None => {
+                let means = self.means(|case| case.least);
+                Some(mean_over_sizes(&means, confidence(self.studies))?.0)
+            }
+        }
     }
 
     /// Returns the half-width of the interval of the logarithm of the mean of the backend at `place`, from the intervals
@@ -188,12 +229,16 @@ impl<'a, 's> Cases<'a, 's> {
 
     /// Returns the quotient of the means of two backends.
     pub(super) fn quotient(&self, own: usize, other: usize) -> Quotient {
-        let both = self.by_mesh(own).into_iter().zip(self.by_mesh(other));
+        let [owns, others] = [own, other].map(|place| self.means(|case| case.times[place]));
+        let both = owns.into_iter().zip(others);
         let on_meshes = both.map(|((size, own), (_, other))| (size, own / other));
         let on_meshes: Vec<(u32, f64)> = on_meshes.collect();
         let confidence = confidence(self.studies);
-        let mean = |place| mean_over_sizes(&self.by_mesh(place), confidence);
-        let ratio = mean(own).zip(mean(other));
+        let means = self.mean(own).zip(self.mean(other));
+        let ratio = means.map(|(own, other)| match self.is_single {
+            true => shown_ratio(own, other),
+            false => own / other,
+        });
         let interval = match self.studies {
             [study] => self.interval_on_mesh(study, own, other),
             _ => mean_over_sizes(&on_meshes, confidence).and_then(|(mean, ends)| {
@@ -202,11 +247,45 @@ impl<'a, 's> Cases<'a, 's> {
             }),
         };
         Quotient {
-            ratio: ratio.map_or(f64::NAN, |((own, _), (other, _))| own / other),
+            ratio: ratio.unwrap_or(f64::NAN),
             interval,
             range: range(on_meshes.iter().map(|(_, ratio)| *ratio)),
             meshes: on_meshes.len(),
         }
+    }
+
+    /// Returns the quotient of the mean times of two backends, on the meshes on which both were measured; for cases of one
+    /// operation. A reader who divides the means of the times gets the ratio.
+    pub(super) fn quotient_of_times(&self, own: usize, other: usize) -> Option<Quotient> {
+        let confidence = confidence(self.studies);
+        let measured = self.cases.iter().filter_map(|case| {
+            let times = [own, other].map(|place| case.times[place]);
+            let study = self.studies[case.mesh];
+            let quotient = study.quotient_of_rows(times[0].row, times[1].row)?;
+            let is_known = quotient.ratio.is_finite();
+            is_known.then_some((decade(study), quotient, times))
+        });
+        let measured: Vec<(u32, Quotient, [Known<'s>; 2])> = measured.collect();
+        let mean_time = |place: usize| {
+            let times = measured.iter().map(|mesh| (mesh.0, mesh.2[place].each));
+            Some(mean_over_sizes(&times.collect::<Vec<_>>(), confidence)?.0)
+        };
+        let ratios = measured.iter().map(|mesh| (mesh.0, mesh.1.ratio));
+        let (mean_ratio, interval) = mean_over_sizes(&ratios.collect::<Vec<_>>(), confidence)?;
+        let half_widths = measured.iter().map(|(_, quotient, _)| {
+            let [low, high] = quotient.interval?;
+            half_width(low, high)
+        });
+        let interval = with_errors(interval, mean_ratio, half_widths);
+        let ratio = shown_ratio(mean_time(0)?, mean_time(1)?);
+        let ratios = measured.iter().map(|(_, quotient, _)| quotient.ratio);
+        Some(Quotient {
+            ratio,
+            interval: interval.map(|ends| ends.map(|end| end * ratio / mean_ratio)),
+            // The mean of rounded ratios is not exactly the quotient of the means.
+            range: range(ratios).map(|[least, most]| [least.min(ratio), most.max(ratio)]),
+            meshes: measured.len(),
+        })
     }
 
     /// Returns the interval of the quotient of two means on one mesh, from those of the quotients of the times, whose

@@ -3,20 +3,22 @@
 use std::collections::BTreeMap;
 
 use super::cases::{Cases, Rows};
-use super::{Overall, Pooled, decade, leaders, not_ranked};
+use super::{Overall, Pooled, leaders, not_ranked};
 use crate::confidence::Confidence;
 use crate::findings::study::Report;
 use crate::operation::{OperationInfo, Purpose};
+use crate::quotient::Quotient;
 use crate::rows::Standing;
 use crate::statistics::geometric_mean;
 
 /// Pools each operation over the meshes on which all its backends have a time.
 pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
-    let rows = Rows::new(studies);
+    let rows = Rows::new(studies, |_| true);
     let of_operation = |info: &OperationInfo| {
         let cases = Cases::new(studies, &rows, backends, &[vec![&info.name]]);
+        let first = cases.first();
         let places = 0..cases.backends.len();
-        let pooled = places.filter_map(|place| pool(studies, &cases, place, &info.name));
+        let pooled = places.filter_map(|place| pool(&cases, place, first, &info.name));
         pooled.collect::<Vec<_>>()
     };
     operations(studies)
@@ -25,49 +27,38 @@ pub(super) fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
         .collect()
 }
 
-/// Pools one operation on the backend at `place`.
+/// Pools one operation on the backend at `place`; `first` is the place of the fastest on average.
 fn pool(
-    studies: &[&Report],
     cases: &Cases<'_, '_>,
     place: usize,
+    first: Option<usize>,
     operation: &str,
 ) -> Option<Pooled> {
-    let confidence = confidence(studies);
-    let ratios = cases.cases.iter().map(|case| {
-        let own = case.times[place];
-        let shown = studies[case.mesh].shown_ratio(own.row);
-        let ratio = shown.unwrap_or(own.ns / case.least.ns);
-        (decade(studies[case.mesh]), ratio)
-    });
-    let ratios: Vec<(u32, f64)> = ratios.collect();
-    let each = cases.cases.iter().filter_map(|case| {
-        let own = case.times[place];
-        own.row.elements?;
-        Some((decade(studies[case.mesh]), own.each))
-    });
-    let each: Vec<(u32, f64)> = each.collect();
-    let rows = || cases.times(place).map(|time| time.row);
+    let ns = cases.mean(place)?;
+    let to_first = first.filter(|&first| first != place && !cases.has_bound(place));
+    let to_first = to_first.and_then(|first| cases.quotient_of_times(place, first));
+    let ratio_to_best = match to_first {
+        Some(quotient) => quotient.ratio,
+        None => ns / cases.base()?,
+    };
+    let interval = to_first.and_then(|quotient| quotient.interval);
+    let range = to_first.and_then(|quotient| quotient.range);
     let standing = |wanted: &[Standing]| {
-        let standings = rows().filter_map(|row| row.standing);
+        let standings = cases.times(place).filter_map(|time| time.row.standing);
         standings.filter(|own| wanted.contains(own)).count()
     };
-    let (ratio_to_best, interval) = mean_over_sizes(&ratios, confidence)?;
-    let half_widths = rows().map(|row| half_width(row.ratio_ci_low?, row.ratio_ci_high?));
-    let interval = with_errors(interval, ratio_to_best, half_widths);
-    let interval = interval.map(|ends| above_best(ends, ratio_to_best));
-    let estimated = cases.times(place).filter(|time| time.bound).count();
-    let interval = interval.filter(|_| estimated == 0);
     Some(Pooled {
         backend: cases.backends[place].to_owned(),
         operation: operation.to_owned(),
         meshes: cases.cases.len(),
         best: standing(&[Standing::Best, Standing::Alone]),
         tied: standing(&[Standing::Equal, Standing::Undecided]),
-        estimated,
+        estimated: cases.times(place).filter(|time| time.bound).count(),
         ratio_to_best,
         ci_low: interval.map(|[low, _]| low),
         ci_high: interval.map(|[_, high]| high),
-        ns_per_element: mean_over_sizes(&each, confidence).map(|(mean, _)| mean),
+        range,
+        ns_per_element: Some(ns),
     })
 }
 
@@ -133,11 +124,28 @@ fn count_mesh(rows: &mut [Overall], own: &[Overall], decided: bool) {
     }
 }
 
+/// Returns, for each backend and each other backend, the quotient of their mean times of an operation over the meshes on
+/// which [`Pool`](super::Pool) pools it, and both were measured; `None` if there is no such mesh. Each power of ten of the
+/// number of faces has the same weight.
+pub fn mean_quotients(
+    studies: &[&Report],
+    operation: &str,
+    backends: &[String],
+) -> Vec<Vec<Option<Quotient>>> {
+    let rows = Rows::new(studies, |name| name == operation);
+    let names: Vec<&str> = backends.iter().map(String::as_str).collect();
+    let cases = Cases::new(studies, &rows, &names, &[vec![operation]]);
+    let place = |name: &String| cases.backends.iter().position(|own| own == name);
+    let quotient = |own, other| cases.quotient_of_times(place(own)?, place(other)?);
+    let row = |own| backends.iter().map(|other| quotient(own, other)).collect();
+    backends.iter().map(row).collect()
+}
+
 /// Computes what [`overall`] returns, without the counts of meshes on which a backend is the fastest. Also
 /// returns which meshes take part in the means of which purpose.
 fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose, usize)>) {
     let (mut overall, mut parts) = (Vec::new(), Vec::new());
-    let rows = Rows::new(studies);
+    let rows = Rows::new(studies, |_| true);
     for purpose in Purpose::ALL {
         let cases = Cases::new(studies, &rows, backends, &tasks(studies, purpose));
         overall.extend(means_of(studies, &cases, purpose));
@@ -148,49 +156,40 @@ fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose,
 
 /// Returns the means of the backends of `cases` from the fastest to the slowest; those with a lower bound come last.
 fn means_of(studies: &[&Report], cases: &Cases<'_, '_>, purpose: Purpose) -> Vec<Overall> {
-    let mean = |place: usize| {
-        let by_mesh = cases.by_mesh(place);
-        let (mean, interval) = mean_over_sizes(&by_mesh, confidence(studies))?;
-        let bound = cases.times(place).any(|time| time.bound);
-        let interval = interval.filter(|_| !bound);
-        let within = [Some(cases.log_error(place))].into_iter();
-        let interval = with_errors(interval, mean, within);
-        let interval = interval.map(|ends| above_best(ends, mean));
-        let row = Overall {
+    let place_with_mean = |place: usize| Some((cases.has_bound(place), cases.mean(place)?, place));
+    let mut order: Vec<(bool, f64, usize)> = (0..cases.backends.len())
+        .filter_map(place_with_mean)
+        .collect();
+    order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let measured: Vec<usize> = order.iter().filter(|row| !row.0).map(|row| row.2).collect();
+    let base = cases.base().unwrap_or(1.0);
+    let row = |(rank, &(bound, mean, place)): (usize, &(bool, f64, usize))| {
+        let faster = measured.get(..rank).unwrap_or(&[]);
+        let to_first = faster.first().filter(|_| !bound);
+        let to_first = to_first.map(|&first| cases.quotient(place, first));
+        // As the times of one operation are compared: on one mesh with the fastest, means over meshes with all.
+        let others = match studies {
+            [_] => &faster[..faster.len().min(1)],
+            _ => faster,
+        };
+        let interval = to_first.and_then(|quotient| quotient.interval);
+        Overall {
             purpose,
             backend: cases.backends[place].to_owned(),
-            meshes: by_mesh.len(),
+            meshes: cases.meshes().count(),
             cases: cases.cases.len(),
-            ratio_to_best: mean,
+            ratio_to_best: to_first.map_or(mean / base, |quotient| quotient.ratio),
             ci_low: interval.map(|[low, _]| low),
             ci_high: interval.map(|[_, high]| high),
+            range: to_first.and_then(|quotient| quotient.range),
             bound,
             best: 0,
             tied: 0,
             undecided: 0,
-            leads: false,
-            to_first: None,
-        };
-        Some((place, row))
+            leads: !bound && !others.iter().any(|&other| cases.is_slower(place, other)),
+        }
     };
-    let mut rows: Vec<(usize, Overall)> = (0..cases.backends.len()).filter_map(mean).collect();
-    rows.sort_by(|(_, a), (_, b)| {
-        let by_ratio = a.ratio_to_best.total_cmp(&b.ratio_to_best);
-        a.bound.cmp(&b.bound).then(by_ratio)
-    });
-    let measured = rows.iter().filter(|(_, row)| !row.bound);
-    let places: Vec<usize> = measured.map(|(place, _)| *place).collect();
-    for (rank, (own, row)) in rows.iter_mut().enumerate().take(places.len()) {
-        let faster = &places[..rank];
-        // As the times of one operation are compared: on one mesh with the fastest, means over meshes with all.
-        let others = match studies {
-            [_] => &faster[..rank.min(1)],
-            _ => faster,
-        };
-        row.leads = !others.iter().any(|&other| cases.is_slower(*own, other));
-        row.to_first = faster.first().map(|&first| cases.quotient(*own, first));
-    }
-    rows.into_iter().map(|(_, row)| row).collect()
+    order.iter().enumerate().map(row).collect()
 }
 
 /// Returns the confidence of intervals over `studies`. Documents are merged only if all studies have the same.
@@ -248,10 +247,4 @@ pub(crate) fn with_errors(
 pub(crate) fn half_width(low: f64, high: f64) -> Option<f64> {
     let half = (high / low).ln() / 2.0;
     half.is_finite().then_some(half)
-}
-
-/// Moves the lower end of the interval of a mean ratio to 1 if it is below 1, because no backend is
-/// faster than the best on average. The interval still contains `mean`.
-fn above_best([low, high]: [f64; 2], mean: f64) -> [f64; 2] {
-    [low.max(mean.min(1.0)), high]
 }

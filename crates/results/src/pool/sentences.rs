@@ -121,12 +121,7 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let next = match next_best(rows) {
         Some((next, ratio)) => format!("; {next} {ratio} the time"),
         // The means differ, but perhaps not on other meshes.
-        None if best
-            .iter()
-            .any(|row| row.to_first().is_some_and(|own| own.range.is_some())) =>
-        {
-            String::new()
-        }
+        None if best.iter().any(|row| row.range.is_some()) => String::new(),
         None => return None,
     };
     let is_equal = |row: &Overall| row.ratio_to_best <= first.ratio_to_best * EQUAL_UP_TO;
@@ -151,8 +146,11 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     ))
 }
 
+/// The largest number of other meshes that a warning names.
+const NAMED: usize = 3;
+
 /// Returns the warnings of the studies, those of the most meshes first. Warnings of one kind are merged: that of the mesh
-/// with the largest number or share is shown, with the number of the others.
+/// with the largest number or share is shown, with the names of the others.
 pub(super) fn warnings(studies: &[&Report]) -> Vec<String> {
     let mut kinds: Vec<(String, Vec<(&str, &str)>)> = Vec::new();
     for study in studies {
@@ -176,10 +174,15 @@ pub(super) fn warnings(studies: &[&Report]) -> Vec<String> {
                     false => worst,
                 }
             })?;
-            Some(match meshes.len() - 1 {
+            let names = meshes.iter().map(|(name, _)| *name);
+            let others: Vec<&str> = names.filter(|name| *name != mesh).collect();
+            let named = others.iter().take(NAMED).map(ToString::to_string);
+            let more = others.len().saturating_sub(NAMED);
+            let more = (more > 0).then(|| counted(more, "other mesh", "other meshes"));
+            let similar = list(named.chain(more));
+            Some(match others.len() {
                 0 => format!("{mesh}: {warning}"),
-                1 => format!("{mesh}: {warning} Another mesh has a similar warning."),
-                others => format!("{mesh}: {warning} {others} other meshes have similar warnings."),
+                _ => format!("{mesh}: {warning} Similar on {similar}."),
             })
         };
     kinds.into_iter().filter_map(text).collect()

@@ -254,7 +254,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
         for line in &panel.lines {
             let mean = line.mean;
             let end = |sign: f64| {
-                let dots = line.dots.iter();
+                let dots = line.dots.iter().filter(|dot| dot.pooled);
                 let end = dots.min_by(|a, b| (sign * a.ratio).total_cmp(&(sign * b.ratio)));
                 end.map_or_else(|| "–".into(), ratio_text)
             };
@@ -268,7 +268,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
                 grouped(mean.meshes - mean.undecided),
                 end(1.0),
                 end(-1.0),
-                grouped(line.dots.len()),
+                grouped(mean.meshes),
             ]);
         }
     }

@@ -83,8 +83,8 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
         return Some(match is_same {
             true => "By size and kind: the same structures are the fastest for all sizes and kinds of meshes.".into(),
             false => {
-                "By size and kind: the structures with the shortest mean time are among the fastest for all sizes and \
-                 kinds of meshes."
+                "By size and kind: the structure with the shortest mean time of each kind of work is the fastest, or shares \
+                 the first place, for all sizes and kinds of meshes."
                     .into()
             }
         });

@@ -218,10 +218,10 @@ fn cache_limits(caches: &[Cache], ends: &[CacheLimit]) -> Option<String> {
     let parts: Vec<String> = last_ends
         .map(|end| format!("{} {}", end.backend, grouped(end.faces)))
         .collect();
-    let kib = grouped(bytes as usize >> 10);
+    let mib = grouped(bytes as usize >> 20);
     Some(format!(
-        "Number of faces from which each structure is larger than the last cache (L{last}, {kib} \
-         KiB): {}.",
+        "Number of faces from which each structure is larger than the last cache (L{last}, {mib} \
+         MiB): {}.",
         parts.join(", ")
     ))
 }

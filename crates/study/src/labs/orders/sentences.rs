@@ -211,10 +211,19 @@ fn scan_effect(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> 
     })?;
     let name = most.backend.as_str();
     let ratio = shown.ratio(operation, [(name, &most.worst), (name, &most.best)])?;
+    let of_scans = |row: &&ResultRow| {
+        let mut effects = comparisons.iter().flat_map(|comparison| &comparison.orders);
+        effects.any(|effect| effect.scans && effect.backend == row.backend)
+    };
+    let mut bounds = shown.0.iter().filter(of_scans);
+    let measured = match bounds.any(|row| row.median_ns.is_none() && row.estimated_ns.is_some()) {
+        true => ", of the times that are no lower bounds",
+        false => "",
+    };
     Some(match most.matters {
         true => format!(
             "On structures that scan all faces for each element, the worst order takes at most {} \
-             the time of the best order ({operation} on {name}).",
+             the time of the best order ({operation} on {name}){measured}.",
             times(ratio),
         ),
         false => "On structures that scan all faces for each element, the order makes no clear \
