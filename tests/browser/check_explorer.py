@@ -9,6 +9,7 @@ for times.
 
 import base64
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -288,6 +289,64 @@ def check_files(page, path):
     check(page.browser.run("return document.querySelectorAll('img').length") == 0, "markup from a file name")
 
 
+# Meshes that some structures cannot hold, by positions and faces from 1.
+FAULTY = {
+    "möbius": (5, [[1, 2, 3], [3, 2, 4], [3, 4, 5], [5, 4, 1], [5, 1, 2]]),
+    "möbius of quads": (6, [[1, 2, 4, 3], [3, 4, 6, 5], [5, 6, 1, 2]]),
+    "projective plane": (6, [[1, 2, 3], [1, 3, 4], [1, 4, 5], [1, 5, 6], [1, 6, 2], [2, 3, 5], [3, 4, 6], [4, 5, 2], [5, 6, 3], [6, 2, 4]]),
+    "three at an edge": (5, [[1, 2, 3], [2, 1, 4], [2, 1, 5]]),
+    "three quads at an edge": (8, [[1, 2, 3, 4], [2, 1, 5, 6], [2, 1, 7, 8]]),
+    "same direction": (4, [[1, 2, 3], [1, 2, 4]]),
+    "two fans": (5, [[1, 2, 3], [1, 4, 5]]),
+    "lone vertex": (4, [[1, 2, 3]]),
+    "quad": (4, [[1, 2, 3, 4]]),
+    "quads, two fans": (7, [[1, 2, 3, 4], [1, 5, 6, 7]]),
+    "twice": (4, [[1, 2, 3], [1, 2, 3], [1, 3, 4]]),
+    "back to back and lone": (5, [[1, 2, 3], [3, 2, 1], [1, 3, 4]]),
+}
+
+
+def faulty(name):
+    vertices, faces = FAULTY[name]
+    positions = [f"v {math.cos(i):.3f} {math.sin(i):.3f} {0.3 * i * i:.3f}" for i in range(vertices)]
+    return "\n".join([*positions, *("f " + " ".join(map(str, face)) for face in faces), ""])
+
+
+def check_remedies(page, path):
+    """Each remedy that is offered is carried out, and then the structure holds the mesh. Refusals and faults are those of the native engine."""
+    offered = 0
+    for name in FAULTY:
+        mesh = {"file": {"name": "faulty.obj", "text": faulty(name)}}
+        native = page.native(mesh=mesh, ask="verdicts")
+        refusing = {verdict["backend"]: verdict["reason"] for verdict in native["verdicts"] if not verdict["holds"]}
+        check(refusing, name)
+        triangulated = page.native(mesh=mesh, triangulate=True, ask="verdicts")
+        held = {verdict["backend"] for verdict in triangulated["verdicts"] if verdict["holds"]}
+        for structure in refusing:
+            page.open(path)
+            drop(page, "faulty.obj", faulty(name).encode())
+            button = f".card[data-structure={structure}] .refusal button"
+            has_button = page.browser.run("return document.querySelector(arguments[0]) !== null", button)
+            check(has_button == (structure in held), name, structure, "triangulate")
+            check(refusing[structure] in page.text(f".card[data-structure={structure}] .refusal"), name, structure)
+            if has_button:
+                page.click(button)
+                check(page.text(f".card[data-structure={structure}] .refusal") == "", name, structure, "with triangles")
+                page.click("#undo")
+                offered += 1
+            page.click("[data-tab=check]")
+            row = f"#verdicts [data-structure={structure}]"
+            check(refusing[structure] in page.text(row), name, page.text(row))
+            shown = page.text("#faults")
+            check(all(f"{fault['count']} {fault['title']}" in shown for fault in native["faults"]), name, shown)
+            page.click(f"[data-repair={structure}]")
+            check("{" not in page.text("#repair"), page.text("#repair"))
+            page.click("#take-repair")
+            check("holds the mesh" in page.text(row), name, page.text(row))
+            offered += 1
+    check(offered > 30, offered)
+
+
 def check_failure(page, path):
     """The engine fails once: the page shows it, starts the engine again, and has lost nothing."""
     page.open(path)
@@ -479,7 +538,7 @@ def main():
         try:
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_pointer, check_edits, check_refusals, check_files, check_failure, check_links, check_quiz,
+            for part in (check_queries, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
                          check_walks, check_measurements, check_levels, check_lessons):
                 part(page, path)
                 check_quiet(browser)

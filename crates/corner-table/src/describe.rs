@@ -3,8 +3,8 @@
 mod algorithms;
 
 use sixfold_core::{
-    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
-    RowName, Word,
+    BuildError, Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable,
+    Relation, RowName, Word,
 };
 
 use crate::mesh::{CornerId, CornerTable};
@@ -74,6 +74,25 @@ impl<P: Probe, E: Editing> Described for CornerTable<E, P> {
         Word::new("c", "left", "opposite(prev(x))"),
         Word::new("c", "swing", "next(opposite(next(x)))"),
     ];
+
+    fn no_room(refusal: &BuildError) -> Option<String> {
+        Some(match refusal {
+            BuildError::NotATriangle { face, .. } => format!(
+                "triangle t has the corners 3 t, 3 t + 1 and 3 t + 2, so the fourth corner of {face} has no place"
+            ),
+            BuildError::NonManifoldEdge { faces, .. } => format!(
+                "a corner has one opposite, so the corner of {} across the edge has no place",
+                faces.get(2)?
+            ),
+            BuildError::RepeatedSide { second, .. } => format!(
+                "opposite corners see the edge in opposite directions, so the corner of {second} across the edge has no place"
+            ),
+            BuildError::NonManifoldVertex { vertex, second, .. } => format!(
+                "a walk from the one corner of {vertex} around the vertex does not come to {second}"
+            ),
+            _ => return None,
+        })
+    }
 
     fn algorithm(relation: Relation) -> &'static [Line] {
         algorithms::of(relation)

@@ -368,7 +368,11 @@ fn each<E: Display>(
             }),
         }
     }
-    Content::Structures { answers, refused }
+    Content::Structures {
+        answers,
+        refused,
+        holding_triangles: Vec::new(),
+    }
 }
 
 fn tables(structure: &Structure, edited: &EditedMesh, records: Vec<Records>) -> Answer {
@@ -389,10 +393,21 @@ impl Subject<'_> {
         &mut self,
         answer: impl Fn(&Structure, &mut EditedMesh) -> Result<Answer, ExplainError>,
     ) -> Content {
-        each(&self.structures, |structure| {
+        let mut content = each(&self.structures, |structure| {
             self.kept
                 .with_built(structure, &self.edits, |mesh| answer(structure, mesh))
-        })
+        });
+        if let Content::Structures {
+            refused,
+            holding_triangles,
+            ..
+        } = &mut content
+        {
+            let names = refused.iter().map(|refused| refused.structure);
+            let names = names.filter(|name| self.kept.holds_only_triangles(name));
+            *holding_triangles = names.collect();
+        }
+        content
     }
 
     fn tables(
@@ -471,10 +486,13 @@ impl Subject<'_> {
         let verdict = |info: &StructureInfo| {
             let refusal = info.capabilities.check(self.polygons()).err();
             let faults = diagnosis.refusals(&info.capabilities);
+            let structure = self.structures.iter().find(|one| one.name() == info.name);
             Verdict {
                 backend: info.name,
                 holds: refusal.is_none(),
-                reason: refusal.map(|refusal| refusal.to_string()),
+                reason: refusal
+                    .zip(structure)
+                    .map(|(refusal, structure)| structure.refusal(refusal).to_string()),
                 faults: faults.map(|fault| fault.kind).collect(),
             }
         };
@@ -500,7 +518,7 @@ impl Subject<'_> {
             repair_for(self.polygons(), &info.capabilities).map(|repaired| Answer::Repair {
                 backend,
                 geometry: Geometry::from_polygons(&repaired.polygons),
-                steps: repaired.steps,
+                steps: repaired.steps.iter().map(Into::into).collect(),
             })
         })
     }

@@ -20,10 +20,12 @@ pub struct Refused {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ExplainError {
     /// The structure cannot hold the mesh.
-    #[error("{structure} cannot hold the mesh: {refusal}")]
+    #[error("{structure} cannot hold the mesh: {refusal}{}", after(room))]
     Refused {
         structure: &'static str,
         refusal: BuildError,
+        /// Which field has no room ([`Described::no_room`](sixfold_core::Described::no_room)).
+        room: Option<String>,
     },
     /// A text that is not the name of an element.
     #[error(transparent)]
@@ -73,6 +75,11 @@ pub enum ExplainError {
         wanted: &'static str,
         element: ElementName,
     },
+}
+
+fn after(room: &Option<String>) -> String {
+    room.as_ref()
+        .map_or(String::new(), |room| format!("; {room}"))
 }
 
 fn an(kind: &str) -> String {

@@ -59,6 +59,7 @@ where
 {
     let mesh = M::from_polygons(polygons).map_err(|refusal| ExplainError::Refused {
         structure: M::NAME,
+        room: M::Probed::<Traced>::no_room(&refusal),
         refusal,
     })?;
     let tables = mesh.memory().tables.into_iter();

@@ -1,6 +1,6 @@
 //! The structures that can be explained.
 
-use sixfold::{MeshEdit, PolygonMesh, Representation};
+use sixfold::{BuildError, MeshEdit, PolygonMesh, Representation};
 use sixfold_core::{Described, EditByName, Measured, Traced};
 
 use crate::built_mesh::BuiltMesh;
@@ -12,6 +12,7 @@ use crate::named_mesh::named_mesh;
 pub struct Structure {
     name: &'static str,
     build: fn(&PolygonMesh) -> Result<BuiltMesh, ExplainError>,
+    no_room: fn(&BuildError) -> Option<String>,
 }
 
 impl Structure {
@@ -24,6 +25,7 @@ impl Structure {
         Self {
             name: M::NAME,
             build: |polygons| named_mesh::<M>(polygons).map(BuiltMesh::fixed),
+            no_room: M::Probed::<Traced>::no_room,
         }
     }
 
@@ -37,6 +39,7 @@ impl Structure {
         Self {
             name: M::NAME,
             build: |polygons| named_mesh::<M>(polygons).map(BuiltMesh::editable),
+            no_room: M::Probed::<Traced>::no_room,
         }
     }
 
@@ -55,6 +58,15 @@ impl Structure {
     /// Returns the name of the structure, such as `half-edge`.
     pub fn name(&self) -> &'static str {
         self.name
+    }
+
+    /// Returns why the structure cannot hold a mesh: the fault, and the field that has no room for it.
+    pub(crate) fn refusal(&self, refusal: BuildError) -> ExplainError {
+        ExplainError::Refused {
+            structure: self.name,
+            room: (self.no_room)(&refusal),
+            refusal,
+        }
     }
 
     /// Builds the structure from `polygons`. O(corners).

@@ -35,6 +35,7 @@ fn build<M: Representation + 'static>(
         Err(refusal) => Err(ExplainError::Refused {
             structure: M::NAME,
             refusal,
+            room: None,
         }),
     }
 }

@@ -3,8 +3,8 @@
 mod algorithms;
 
 use sixfold_core::{
-    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
-    RowName, Word,
+    BuildError, Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable,
+    Relation, RowName, Word,
 };
 
 use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
@@ -81,6 +81,22 @@ impl<P: Probe, E: Editing> Described for HalfEdgeMesh<E, P> {
     }
 
     const WORDS: &'static [Word] = &[Word::new("h", "target", "origin(twin(x))")];
+
+    fn no_room(refusal: &BuildError) -> Option<String> {
+        Some(match refusal {
+            BuildError::NonManifoldEdge { faces, .. } => format!(
+                "a half-edge has one twin, so the side of {} has no place",
+                faces.get(2)?
+            ),
+            BuildError::RepeatedSide { second, .. } => format!(
+                "a half-edge and its twin run in opposite directions, so the side of {second} has no place"
+            ),
+            BuildError::NonManifoldVertex { vertex, second, .. } => format!(
+                "a walk from the one half-edge of {vertex} around the vertex does not come to {second}"
+            ),
+            _ => return None,
+        })
+    }
 
     fn algorithm(relation: Relation) -> &'static [Line] {
         algorithms::of(relation)

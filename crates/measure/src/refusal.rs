@@ -176,11 +176,11 @@ mod tests {
     #[test]
     fn flipping_is_advised_only_if_it_can_help() {
         let flippable = reason_of(&[&[0, 1, 2], &[0, 1, 3]], 4);
-        assert!(flippable.contains("flip one of them"), "{flippable}");
+        assert!(flippable.contains("reverse one of them"), "{flippable}");
         // A Möbius strip of five triangles.
         let strip: &[&[u32]] = &[&[0, 1, 2], &[2, 1, 3], &[2, 3, 4], &[4, 3, 0], &[4, 0, 1]];
         let text = reason_of(strip, 5);
         assert!(text.contains("not orientable"), "{text}");
-        assert!(!text.contains("flip one"), "{text}");
+        assert!(!text.contains("reverse one"), "{text}");
     }
 }

@@ -1,7 +1,7 @@
 //! The records of a polygon soup, as textbooks show them.
 
 use sixfold_core::{
-    Described, Editing, Element, Field, Line, Probe, RecordTable, Relation, RowName,
+    BuildError, Described, Editing, Element, Field, Line, Probe, RecordTable, Relation, RowName,
 };
 use sixfold_scanning::algorithm_of;
 
@@ -23,6 +23,20 @@ impl<P: Probe, E: Editing> Described for PolygonSoup<E, P> {
             Element::Vertex(_) | Element::Edge(_) => Vec::new(),
             Element::Face(f) => vec![RowName::new("f", f)],
         }
+    }
+
+    fn no_room(refusal: &BuildError) -> Option<String> {
+        Some(match refusal {
+            BuildError::IsolatedVertex { vertex, .. } => {
+                format!(
+                    "vertices are stored in the corners of faces only, so {vertex} has no place"
+                )
+            }
+            BuildError::CoincidentCorners { .. } => {
+                "a vertex is its position, so the two corners are one vertex".to_owned()
+            }
+            _ => return None,
+        })
     }
 
     fn algorithm(relation: Relation) -> &'static [Line] {

@@ -246,7 +246,7 @@ fn find_edges(incidence: &Incidence<'_>, found: &mut Found) {
         if edge.len() > 2 {
             found.add(FaultKind::NonManifoldEdge, place);
         }
-        if down > 1 || edge.len() - down > 1 {
+        if edge.len() == 2 && down != 1 {
             found.add(FaultKind::RepeatedSide, place);
         }
     });

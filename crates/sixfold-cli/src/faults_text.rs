@@ -180,9 +180,7 @@ impl Diagnosed<'_> {
     /// for it, and the options that repair it. The last lines have the command. If the faces do not
     /// share vertices, the only command is the one that joins them, because the other faults can
     /// follow from this one.
-    ///
-    /// `inconsistent_edges` is the number of edges with two faces that run in the same direction.
-    pub(crate) fn text(&self, inconsistent_edges: usize) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut lines = Vec::new();
         let is_unwelded = self.diagnosis.looks_unwelded();
         if is_unwelded {
@@ -205,21 +203,11 @@ impl Diagnosed<'_> {
         }
         let faces = self.first_faces();
         for fault in &self.diagnosis.faults {
-            let mut title = Self::title(fault);
-            match fault.kind {
-                // The first line of the list has these vertices.
-                FaultKind::CoincidentVertex if is_unwelded => continue,
-                // On an edge with three faces, two of them always run in the same direction.
-                FaultKind::RepeatedSide if inconsistent_edges == 0 => continue,
-                FaultKind::RepeatedSide if fault.count > inconsistent_edges => {
-                    let others = match fault.count - inconsistent_edges {
-                        1 => "1 of them has".to_owned(),
-                        n => format!("{} of them have", grouped(n)),
-                    };
-                    title += &format!(" ({others} three or more faces)");
-                }
-                _ => {}
+            // The first line of the list has these vertices.
+            if fault.kind == FaultKind::CoincidentVertex && is_unwelded {
+                continue;
             }
+            let mut title = Self::title(fault);
             title += &self.places_text(fault, &faces);
             lines.push(hanging_indent(&label(&lines), &title));
             let mut notes = Vec::new();

@@ -112,7 +112,7 @@ fn inspect(path: &Path, arguments: &Inspect, text: &mut TextOutput) -> Result<In
     }
     text.print_line(&verdicts_text(&inspection.mesh, &verdicts));
     text.print_line("");
-    text.print_line(&diagnosed.text(inspection.mesh.facts.inconsistent_edges));
+    text.print_line(&diagnosed.text());
     let diagnosis = diagnosed.record();
     Ok(Inspected {
         inspection,

@@ -3,8 +3,8 @@
 mod algorithms;
 
 use sixfold_core::{
-    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
-    RowName,
+    BuildError, Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable,
+    Relation, RowName,
 };
 
 use crate::mesh::WingedEdgeMesh;
@@ -69,6 +69,22 @@ impl<P: Probe, E: Editing> Described for WingedEdgeMesh<E, P> {
             Element::Edge(e) => RowName::new("e", e),
             Element::Face(f) => RowName::new("f", f),
         }]
+    }
+
+    fn no_room(refusal: &BuildError) -> Option<String> {
+        Some(match refusal {
+            BuildError::NonManifoldEdge { faces, .. } => format!(
+                "an edge has one face on its left and one on its right, so {} has no place",
+                faces.get(2)?
+            ),
+            BuildError::RepeatedSide { first, second, .. } => format!(
+                "an edge has one face on each side, and {first} and {second} are on the same one, so {second} has no place"
+            ),
+            BuildError::NonManifoldVertex { vertex, second, .. } => format!(
+                "a walk from the one edge of {vertex} around the vertex does not come to {second}"
+            ),
+            _ => return None,
+        })
     }
 
     fn algorithm(relation: Relation) -> &'static [Line] {

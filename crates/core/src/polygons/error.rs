@@ -53,15 +53,18 @@ pub enum BuildError {
     #[error("face {face} has {degree} corners, and only triangles fit: triangulate the mesh")]
     NotATriangle { face: FaceId, degree: usize },
     /// Three or more faces along one edge.
-    #[error("edge {0}–{1} has {count} faces ({faces}): split the edge, or choose a structure that \
-             holds non-manifold edges",
+    #[error("edge {0}–{1} has {count} faces ({faces}): give all but two of them vertices of their own, or choose a \
+             structure that holds non-manifold edges",
         .vertices[0], .vertices[1], count = .faces.len(), faces = format_faces(.faces))]
     NonManifoldEdge {
         vertices: [VertexId; 2],
         faces: Vec<FaceId>,
     },
     /// Two faces run along one edge in the same direction.
-    #[error("faces {first} and {second} both run {from}→{to}: flip one of them, or split the edge")]
+    #[error(
+        "faces {first} and {second} both run {from}→{to}: reverse one of them if its neighbours then agree, or give \
+         it vertices of its own"
+    )]
     RepeatedSide {
         from: VertexId,
         to: VertexId,

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::Point;
 use crate::handles::row_id::RowId;
+use crate::polygons::error::BuildError;
 use crate::tables::editing::Editing;
 use crate::tables::face_spans::FaceSpans;
 use crate::tables::probe::Probe;
@@ -28,6 +29,13 @@ pub trait Described: MeshQuery {
     /// Returns the names of the rows that the handle of an element gives without a read. A structure
     /// without rows for this kind of element returns none, or the rows of the ends of an edge.
     fn rows_of(&self, element: Element<Self>) -> Vec<RowName>;
+
+    /// Returns which field has no room for the fault of a mesh that the structure refuses, such as `a half-edge has one
+    /// twin, so the side of f8 has no place`. None by default.
+    fn no_room(refusal: &BuildError) -> Option<String> {
+        let _ = refusal;
+        None
+    }
 
     /// Words of textbooks that stand for several fields. None by default.
     const WORDS: &'static [Word] = &[];

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sixfold::Relation;
+use sixfold::{Relation, structure_infos};
 use sixfold_core::EditByName;
 
 use super::source::Sourced;
@@ -20,6 +20,8 @@ pub(super) struct Kept {
     pub(super) sourced: Sourced,
     /// By the names of the structures. A structure that cannot hold the mesh has its error.
     built: BTreeMap<&'static str, Result<EditedMesh, ExplainError>>,
+    /// The structures that refuse the mesh, but hold it with its polygons cut into triangles; `None` before it was asked.
+    holding_triangles: Option<Vec<&'static str>>,
     /// The structures without probes, for sweeps.
     swept: BTreeMap<&'static str, Result<Box<dyn Swept>, ExplainError>>,
 }
@@ -29,8 +31,30 @@ impl Kept {
         Self {
             sourced,
             built: BTreeMap::new(),
+            holding_triangles: None,
             swept: BTreeMap::new(),
         }
+    }
+
+    /// Returns whether the structure refuses the mesh, but holds it with its polygons cut into triangles. The first call
+    /// takes the time to cut the polygons.
+    pub(super) fn holds_only_triangles(&mut self, structure: &str) -> bool {
+        let polygons = &self.sourced.polygons;
+        let names = self.holding_triangles.get_or_insert_with(|| {
+            if polygons.first_polygon().is_none() {
+                return Vec::new();
+            }
+            let Ok(cut) = polygons.triangulated() else {
+                return Vec::new();
+            };
+            let mut infos = structure_infos();
+            infos.retain(|info| {
+                let holds = |polygons| info.capabilities.check(polygons).is_ok();
+                !holds(polygons) && holds(&cut.polygons)
+            });
+            infos.iter().map(|info| info.name).collect()
+        });
+        names.contains(&structure)
     }
 
     /// Frees the memory of the structures. They are built again when they are needed.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sixfold::Facts;
-use sixfold::repair::{FaultKind, Place, Step, StepReport};
+use sixfold::repair::{FaultKind, Place, Step, StepCounts, StepReport};
 
 use super::refinement::Parent;
 use crate::built_mesh::Geometry;
@@ -27,6 +27,9 @@ pub(super) enum Content {
     Structures {
         answers: Vec<Answer>,
         refused: Vec<Refused>,
+        /// Those of the refusing structures that hold the mesh if its polygons are cut into triangles.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        holding_triangles: Vec<&'static str>,
     },
     Facts {
         facts: Facts,
@@ -71,10 +74,29 @@ pub(super) enum Answer {
     },
     Repair {
         backend: &'static str,
-        steps: Vec<StepReport>,
+        steps: Vec<StepDone>,
         #[serde(flatten)]
         geometry: Geometry,
     },
+}
+
+/// What one step of a repair did.
+#[derive(Serialize)]
+pub(super) struct StepDone {
+    step: Step,
+    counts: StepCounts,
+    /// What the step could not repair, in words.
+    left: Vec<String>,
+}
+
+impl From<&StepReport> for StepDone {
+    fn from(report: &StepReport) -> Self {
+        Self {
+            step: report.step,
+            counts: report.counts,
+            left: report.left.iter().map(ToString::to_string).collect(),
+        }
+    }
 }
 
 /// Whether a structure holds the mesh.

@@ -106,6 +106,98 @@ fn an_edit_that_is_left_out_is_undone_and_a_refused_one_is_named() {
     );
 }
 
+/// A refusal names the field that has no room, in verdicts and in answers.
+#[test]
+fn refusals_say_which_field_has_no_room() {
+    let points: Vec<[f64; 3]> = (0..6)
+        .map(|i| [f64::from(i), f64::from(i * i), 0.0])
+        .collect();
+    let refusal = |faces: Value, structure: &str| {
+        let mesh = json!({ "polygons": { "positions": points, "faces": faces } });
+        let query = json!({ "relation": "vertex_faces", "element": "v0" });
+        let ask_for = |ask_for: Value| {
+            ask(&json!({ "mesh": mesh, "structures": [structure], "ask": ask_for }))
+        };
+        let verdicts = ask_for(json!("verdicts"));
+        let traced = ask_for(json!({ "trace": query }));
+        assert_eq!(
+            verdicts["verdicts"][0]["reason"],
+            traced["refused"][0]["reason"]
+        );
+        let holds_triangles = traced["holding_triangles"] == json!([structure]);
+        let reason = traced["refused"][0]["reason"].as_str().expect("a reason");
+        (reason.to_owned(), holds_triangles)
+    };
+    let book = || json!([[0, 1, 2], [1, 0, 3], [1, 0, 4]]);
+    let same = || json!([[0, 1, 2], [0, 1, 3]]);
+    let fans = || json!([[0, 1, 2], [0, 3, 4]]);
+    for (faces, structure, room) in [
+        (
+            book(),
+            "half-edge",
+            "a half-edge has one twin, so the side of f2 has no place",
+        ),
+        (
+            book(),
+            "winged-edge",
+            "an edge has one face on its left and one on its right, so f2 has no place",
+        ),
+        (
+            book(),
+            "corner-table",
+            "a corner has one opposite, so the corner of f2 across the edge has no place",
+        ),
+        (
+            same(),
+            "half-edge",
+            "a half-edge and its twin run in opposite directions, so the side of f1 has no place",
+        ),
+        (
+            same(),
+            "winged-edge",
+            "f0 and f1 are on the same one, so f1 has no place",
+        ),
+        (
+            same(),
+            "corner-table",
+            "opposite corners see the edge in opposite directions, so the corner of f1",
+        ),
+        (
+            fans(),
+            "half-edge",
+            "the one half-edge of v0 around the vertex does not come to f1",
+        ),
+        (
+            fans(),
+            "winged-edge",
+            "the one edge of v0 around the vertex does not come to f1",
+        ),
+        (
+            fans(),
+            "corner-table",
+            "the one corner of v0 around the vertex does not come to f1",
+        ),
+        (
+            book(),
+            "polygon-soup",
+            "vertices are stored in the corners of faces only, so v5 has no place",
+        ),
+    ] {
+        let (reason, holds_triangles) = refusal(faces, structure);
+        assert!(reason.contains(room), "{structure}: {reason}");
+        assert!(!holds_triangles, "{structure}");
+    }
+    let (reason, holds_triangles) = refusal(json!([[0, 1, 2, 3]]), "corner-table");
+    assert!(
+        reason.ends_with("so the fourth corner of f0 has no place"),
+        "{reason}"
+    );
+    assert!(holds_triangles);
+    // Cutting these polygons is not enough.
+    let (_, holds_triangles) = refusal(json!([[0, 1, 2, 3], [1, 0, 4], [1, 0, 5]]), "corner-table");
+    assert!(!holds_triangles);
+}
+
 #[test]
 fn verdicts_name_the_faults_and_repairs_mend_them() {
     // Three triangles on one edge, as in a file.

@@ -99,7 +99,7 @@ pub enum FaultKind {
     Polygon,
     /// An edge with three or more faces.
     NonManifoldEdge,
-    /// An edge along which two faces run in the same direction.
+    /// An edge with two faces, which run in the same direction.
     RepeatedSide,
     /// A vertex whose faces form several fans.
     NonManifoldVertex,
@@ -157,7 +157,10 @@ impl FaultKind {
     pub fn is_refused_by(self, capabilities: &Capabilities) -> bool {
         match self {
             Self::Polygon => !capabilities.polygons,
-            Self::NonManifoldEdge => !capabilities.non_manifold_edges,
+            // Two of three faces always run in the same direction.
+            Self::NonManifoldEdge => {
+                !capabilities.non_manifold_edges || !capabilities.inconsistent_orientation
+            }
             Self::RepeatedSide => !capabilities.inconsistent_orientation,
             Self::NonManifoldVertex => !capabilities.non_manifold_vertices,
             Self::IsolatedVertex => !capabilities.isolated_vertices,

@@ -51,7 +51,7 @@ proptest! {
         prop_assert_eq!(count(FaultKind::IsolatedVertex), facts.isolated_vertices);
         prop_assert_eq!(count(FaultKind::NotOrientable) == 0, facts.orientable != Some(false));
         prop_assert!(count(FaultKind::DuplicateFace) <= facts.duplicate_faces);
-        prop_assert!(count(FaultKind::RepeatedSide) >= facts.inconsistent_edges);
+        prop_assert_eq!(count(FaultKind::RepeatedSide), facts.inconsistent_edges);
     }
 
     /// Polygons cross themselves exactly if their triangulation says so.

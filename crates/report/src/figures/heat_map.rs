@@ -109,7 +109,7 @@ fn caption(matrix: &Matrix) -> String {
     let means = has(&|cell| !cell.each.is_empty());
     let parts = [
         (true, match means {
-            true => "The geometric mean over the meshes of the time divided by that of the fastest structure of each mesh. Dark is fast.",
+            true => "The geometric mean over the meshes of the time, divided by that of the structure that is the fastest on average. Dark is fast.",
             false => "Time divided by that of the fastest structure of the row. Dark is fast.",
         }.to_owned()),
         (

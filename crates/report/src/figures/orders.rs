@@ -217,6 +217,7 @@ fn panel(
         }
         let text = match worst {
             _ if best.is_infinite() => "–".into(),
+            _ if line.points.iter().flatten().count() == 1 => duration(best),
             1.0 => format!("all {}", duration(best)),
             worst => format!("{} of {}", times(worst), duration(best)),
         };

@@ -160,7 +160,8 @@ for (const figure of document.querySelectorAll('figure[data-figure]')) {
       return `<text x="${NAMES - 8}" y="${middle}" text-anchor="end">${backend}</text>${marks}`;
     });
     const label = `The samples of ${name} by launch`;
-    const about = 'Each tick is a sample, each line of ticks a launch; the axis is logarithmic.';
+    const about = 'Each tick is a sample, each line of ticks a launch; the axis is logarithmic. The time of the table is corrected for slow ' +
+      'and fast launches.';
     return `<div class="scroll" tabindex="0" role="region" aria-label="Figure: ${label}"><svg role="img" aria-label="${label}"
       width="${NAMES + LENGTH + 40}" height="${y}" font-size="12" fill="currentColor"><title>${label}</title><desc>${about}</desc><text
       x="${NAMES}" y="12">${duration(least)}</text><text x="${NAMES + LENGTH}" y="12" text-anchor="end">${

@@ -147,7 +147,7 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
                         span.reading data-time=(time) data-ends=(ends) {
                             (time) " divided by that of the fastest" @if is_mean { " on average" } ", with " (ends) "."
                         }
-                        " A ratio is the quotient of the two times with three digits, as they are shown."
+                        " A measured ratio is the quotient of the two times with three digits, as they are shown."
                         " A dot is a ratio on a logarithmic scale "
                         span.scale { "from 1 to 10" }
                         ", the line is between these ends; an arrow is beyond."

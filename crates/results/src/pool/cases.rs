@@ -86,6 +86,8 @@ impl<'s> Rows<'s> {
 /// One task on one mesh.
 pub(super) struct Case<'s> {
     pub(super) mesh: usize,
+    /// The number of the task.
+    task: usize,
     /// The time of each compared backend.
     pub(super) times: Vec<Known<'s>>,
     /// The shortest measured time. A lower bound cannot be the shortest time.
@@ -94,10 +96,15 @@ pub(super) struct Case<'s> {
 
 impl<'s> Case<'s> {
     /// Returns `None` if no time is measured.
-    fn new(mesh: usize, times: Vec<Known<'s>>) -> Option<Self> {
+    fn new([mesh, task]: [usize; 2], times: Vec<Known<'s>>) -> Option<Self> {
         let measured = times.iter().filter(|time| !time.bound);
         let least = *measured.min_by(|a, b| a.ns.total_cmp(&b.ns))?;
-        Some(Self { mesh, times, least })
+        Some(Self {
+            mesh,
+            task,
+            times,
+            least,
+        })
     }
 
     /// Returns whether the shortest time is known: no lower bound is below the shortest measured time.
@@ -112,7 +119,7 @@ pub(super) struct Cases<'a, 's> {
     studies: &'a [&'s Report],
     pub(super) backends: Vec<&'a str>,
     pub(super) cases: Vec<Case<'s>>,
-    /// Whether all cases are of one operation, so that means are times per element and not ratios.
+    /// Whether all cases are of one task, so that means are times per element and not ratios.
     is_single: bool,
 }
 
@@ -125,12 +132,12 @@ impl<'a, 's> Cases<'a, 's> {
         backends: &[&'a str],
         tasks: &[Vec<&str>],
     ) -> Self {
-        let on_mesh = |mesh: usize| tasks.iter().map(move |task| (mesh, task));
-        let all: Vec<(usize, &Vec<&str>)> = (0..studies.len()).flat_map(on_mesh).collect();
+        let on_mesh = |mesh: usize| (0..tasks.len()).map(move |task| [mesh, task]);
+        let all: Vec<[usize; 2]> = (0..studies.len()).flat_map(on_mesh).collect();
         let time = |case: usize, backend: &str| {
-            let (mesh, task) = all[case];
+            let [mesh, task] = all[case];
             let row = |operation: &&str| rows.0[mesh].get(&(*operation, backend)).copied();
-            Known::of_task(task.iter().filter_map(row))
+            Known::of_task(tasks[task].iter().filter_map(row))
         };
         let has = |case: usize, backend: &str| time(case, backend).is_some();
         let some = |backend: &&&str| (0..all.len()).any(|case| has(case, backend));
@@ -138,7 +145,7 @@ impl<'a, 's> Cases<'a, 's> {
         let (backends, shared) = common(&backends, all.len(), has);
         let cases = shared.into_iter().filter_map(|case| {
             let times = backends.iter().map(|backend| time(case, backend));
-            Case::new(all[case].0, times.collect::<Option<_>>()?)
+            Case::new(all[case], times.collect::<Option<_>>()?)
         });
         let mut cases: Vec<Case<'s>> = cases.collect();
         // A mean with a case that is not decided would favour the backends that were measured. If no case is decided,
@@ -146,11 +153,13 @@ impl<'a, 's> Cases<'a, 's> {
         if cases.iter().any(Case::is_decided) {
             cases.retain(Case::is_decided);
         }
+        let mut pairs = cases.windows(2);
+        let is_single = pairs.all(|pair| pair[0].task == pair[1].task);
         Self {
             studies,
             backends,
             cases,
-            is_single: matches!(tasks, [task] if task.len() == 1),
+            is_single,
         }
     }
 
@@ -195,7 +204,7 @@ impl<'a, 's> Cases<'a, 's> {
         means.collect()
     }
 
-    /// Returns the mean of the backend at `place`: of its times per element if all cases are of one operation, else of the
+    /// Returns the mean of the backend at `place`: of its times per element if all cases are of one task, else of the
     /// ratios to the shortest time of each case.
     pub(super) fn mean(&self, place: usize) -> Option<f64> {
         let means = self.means(|case| case.times[place]);
@@ -231,14 +240,15 @@ impl<'a, 's> Cases<'a, 's> {
     pub(super) fn quotient(&self, own: usize, other: usize) -> Quotient {
         let [owns, others] = [own, other].map(|place| self.means(|case| case.times[place]));
         let both = owns.into_iter().zip(others);
-        let on_meshes = both.map(|((size, own), (_, other))| (size, own / other));
+        let quotient = |own: f64, other: f64| match self.is_single {
+            true => shown_ratio(own, other),
+            false => own / other,
+        };
+        let on_meshes = both.map(|((size, own), (_, other))| (size, quotient(own, other)));
         let on_meshes: Vec<(u32, f64)> = on_meshes.collect();
         let confidence = confidence(self.studies);
         let means = self.mean(own).zip(self.mean(other));
-        let ratio = means.map(|(own, other)| match self.is_single {
-            true => shown_ratio(own, other),
-            false => own / other,
-        });
+        let ratio = means.map(|(own, other)| quotient(own, other));
         let interval = match self.studies {
             [study] => self.interval_on_mesh(study, own, other),
             _ => mean_over_sizes(&on_meshes, confidence).and_then(|(mean, ends)| {

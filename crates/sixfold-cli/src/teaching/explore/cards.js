@@ -92,7 +92,8 @@ export class Card {
       const { table, derived } = columns[i];
       const cell = el("td", { class: derived && "derived", title: field.length > 12 && field }, shortened(field));
       line.append(cell);
-      this.keep(`${table} ${name}`, cell);
+      // A field that is not stored is not read.
+      if (!derived) this.keep(`${table} ${name}`, cell);
     });
     if (fields.length === 0) for (const { table } of columns) this.keep(`${table} ${name}`, line.lastChild);
     const values = Object.fromEntries(columns.map((column, i) => [column.name, fields[i]]));
@@ -157,7 +158,7 @@ export class Card {
     }
     const line = found?.step.line ?? null;
     [...this.code.children].forEach((item, i) => item.classList.toggle("marked", i === line));
-    this.now.replaceChildren(...sentence(found, this.rows));
+    this.now.replaceChildren(...sentence(found, this.rows, this.records ?? []));
     const results = this.timeline.resultsAt(time);
     const isDone = time >= this.timeline.length;
     const listed = results.length > MOST_RESULTS ? `… ${results.slice(-MOST_RESULTS).join(", ")}` : results.join(", ");
@@ -196,12 +197,14 @@ function gap(columns, rows) {
 }
 
 // What a step does, in words.
-function sentence(found, rows) {
+function sentence(found, rows, records) {
   if (!found) return ["not started"];
   const { step, offset } = found;
   if (step.step === "yield") return ["yields ", el("b", {}, step.result)];
   const row = `${step.row[0]}${rowNumber(step.row) + offset}`;
   const fields = step.fields.map(([name, value]) => `${name} ${value}`).join(", ");
-  const part = step.rows > 1 ? ` (row ${(offset + 1).toLocaleString("en")} of ${step.rows.toLocaleString("en")})` : "";
+  // A scan goes on after each result: the place is that in the table, not in the rows since the last result.
+  const table = records.find(({ columns }) => columns.some((column) => column.table === step.table));
+  const part = step.rows > 1 && table ? ` (row ${(rowNumber(row) + 1).toLocaleString("en")} of ${table.total.toLocaleString("en")})` : "";
   return ["reads ", el("b", {}, `${step.table} ${rows.nameOf(row)}`), `: ${step.reason.text}${part}`, fields ? ` → ${fields}` : ""];
 }

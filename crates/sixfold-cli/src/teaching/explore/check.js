@@ -76,7 +76,7 @@ function repairTable(explorer) {
   return el("div", { id: "repair" },
     el("p", {}, `The repair for ${structure}: `),
     el("ol", {}, answer.steps.map(({ step, counts, left }) =>
-      el("li", {}, `${step}: ${changes(counts)}`, left.length ? ` (left: ${left.map((one) => JSON.stringify(one)).join(", ")})` : ""))),
+      el("li", {}, `${step}: ${changes(counts)}`, left.length ? ` (left: ${left.join("; ")})` : ""))),
     button("take the repaired mesh", () => explorer.run(() =>
       explorer.replace(answer, `repaired for ${structure}`, { tab: "check" })), { class: "main", id: "take-repair" }));
 }

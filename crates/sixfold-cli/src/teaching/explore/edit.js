@@ -119,7 +119,8 @@ function editTable(explorer, { edit, answers, refusals, made: edgesMade, deleted
     .map(([word, list]) => `${word}: ${list.slice(0, 12).join(", ")}${list.length > 12 ? " …" : ""}. `);
   const cells = (structure) => {
     const answer = answers.get(structure);
-    if (!answer) return el("td", { colSpan: 3, class: "refusal" }, refusals.get(structure) ?? "not asked: it refused an edit before");
+    if (!answer) return el("td", { colSpan: 3, class: "refusal" }, refusals.get(structure) ??
+      (explorer.base.refusals.has(structure) ? "cannot hold the mesh" : "not asked: it refused an edit before"));
     return [answer.reads, answer.writes, answer.changed].map((value) => el("td", { class: "count" }, value.toLocaleString("en")));
   };
   return el("details", { open: true, id: "edit-result" },

@@ -183,12 +183,14 @@ export class Explorer {
 
   // What does not depend on the view: the geometry, the first rows of all tables, and who refuses the mesh.
   async baseOf(state, asked) {
-    const [records, refusals, notes] = [new Map(), new Map(), new Set()];
+    const [records, refusals, notes, holdingTriangles] = [new Map(), new Map(), new Set(), new Set()];
     for (const { structures, edits } of asked) {
       const ask = { tables: { rows: [0, WHOLE_TABLE - 1] } };
       const response = await this.engine.ask(state.subject, { structures, edits, ask });
       for (const answer of response.answers) records.set(answer.backend, answer);
       for (const { backend, reason } of response.refused) refusals.set(backend, reason);
+      // They cannot hold the mesh as it is.
+      for (const structure of response.holding_triangles ?? []) holdingTriangles.add(structure);
       for (const note of response.notes ?? []) notes.add(note);
     }
     // A soup has no vertices of its own: those without a face are lost, and those at one place are one.
@@ -198,7 +200,7 @@ export class Explorer {
     if (!structure) throw new Error([...refusals.values()][0] ?? "no structure holds this mesh");
     const request = { structures: [structure], edits: asked[0].edits, ask: "geometry" };
     const [geometry] = (await this.engine.ask(state.subject, request)).answers;
-    return { records, refusals, notes: [...notes], geometry, model: new Model(geometry) };
+    return { records, refusals, holdingTriangles, notes: [...notes], geometry, model: new Model(geometry) };
   }
 
   async trace(shown, asked) {

@@ -118,7 +118,7 @@ class Page {
       state: status,
       changes: changesOf(lastEdit, name),
     });
-    if (!explorer.records.has(name) && !state.subject.triangulate && explorer.model.faces.some((face) => face?.length > 3)) {
+    if (explorer.base.holdingTriangles.has(name)) {
       card.reason.append(" ", button("triangulate", () => explorer.run(() =>
         explorer.withSubject({ ...explorer.subject, triangulate: true }))));
     }

@@ -2,7 +2,7 @@
 
 use super::{CacheLimit, Fit};
 use sixfold_measure::Operation;
-use sixfold_results::numbers::{grouped, list, times};
+use sixfold_results::numbers::{figure, grouped, list, shown_ratio, times};
 use sixfold_results::{Agreement, Cache, ResultRow, SizeReport, Slope, Standing, last_level_bytes};
 
 pub(super) fn sentences(
@@ -100,10 +100,8 @@ fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     let local = fits.iter().filter(|fit| !fit.scans);
     let mut changes: Vec<(f64, &Fit)> = local
         .filter_map(|fit| {
-            Some((
-                ns_per_element_at(large, fit)? / ns_per_element_at(small, fit)?,
-                fit,
-            ))
+            let [large, small] = [large, small].map(|size| ns_per_element_at(size, fit));
+            Some((shown_ratio(large?, small?), fit))
         })
         .filter(|(ratio, _)| ratio.is_finite())
         .collect();
@@ -112,11 +110,13 @@ fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     let (most, last) = changes.last()?;
     (small.faces < large.faces).then(|| {
         format!(
-            "On structures that do not scan all faces for each element, the time per element changes from {} to {} faces by a factor between {least:.2} ({} on {}) and {most:.2} ({} on {}).",
+            "On structures that do not scan all faces for each element, the time per element changes from {} to {} faces by a factor between {} ({} on {}) and {} ({} on {}).",
             grouped(small.faces),
             grouped(large.faces),
+            figure(*least),
             first.operation,
             first.backend,
+            figure(*most),
             last.operation,
             last.backend,
         )
