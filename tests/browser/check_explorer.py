@@ -424,18 +424,21 @@ def check_quiz(page, path):
 def check_walks(page, path):
     page.open(path)
     page.click("[data-tab=walk]")
-    page.click("#run-walk")
-    check("Right: the walk yields vertex_vertices" in page.text("#walk-result"), page.text("#walk-result"))
+    written = "return document.getElementById('walk-text').value"
+    # The task comes first, without an answer.
+    check(page.browser.run(written) == "" and page.text("#walk-result") == "", page.text("#walk-result"))
+    check("that yields the vertices beside v0" in page.text("#panel"), page.text("#panel"))
+    page.click("#hint")
+    check("leaving(v0)" in page.text("#walk-hint") and page.browser.run(written) == "", page.text("#walk-hint"))
     page.browser.run("document.getElementById('walk-text').value = 'h = leaving(v0)\\nyield frobnicate(h)'")
     page.click("#run-walk")
     check("frobnicate" in page.text("#walk-result"), page.text("#walk-result"))
-    # Each structure has a walk to begin with, which is that of the chosen element.
-    page.browser.run("document.getElementById('walk-text').value = ''")
-    page.click("#run-walk")
+    # The solution is that of the chosen element, and of the chosen structure.
     page.type("#element", "v3")
+    page.click("#solution")
     for name in ("winged-edge", "corner-table", "half-edge"):
         page.click(f".card[data-structure={name}] h3 button")
-        check("v3" in page.browser.run("return document.getElementById('walk-text').value"), name)
+        check("v3" in page.browser.run(written), name)
         check("Right: the walk yields vertex_vertices" in page.text("#walk-result"), name, page.text("#walk-result"))
     for name in STRUCTURES[:3]:
         page.click(f".card[data-structure={name}] h3 button")
@@ -458,7 +461,7 @@ def check_levels(page, path):
     page.type("#point", "v8")
     native = page.native(mesh={"shape": {"name": "octahedron"}}, ask={"stencil": {"scheme": "loop", "level": 1, "point": 8}})
     shown = page.browser.run("return [...document.querySelectorAll('#stencil tr')].map(row => [...row.cells].map(cell => cell.textContent))")
-    value = lambda text: int(text.split("/")[0]) / int((text + "/1").split("/")[1])
+    value = lambda text: int(text.split("/")[0]) / int((text + "/1").split("/")[1]) if "." not in text else float(text)
     expected = [[parent["vertex"], parent["weight"]] for parent in native["parents"]]
     check([[name, value(weight)] for name, weight in shown] == expected, shown, expected)
     # A sharp edge stays with its mesh, and goes with an edit that deletes it.

@@ -84,7 +84,7 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
             true => "By size and kind: the same structures are the fastest for all sizes and kinds of meshes.".into(),
             false => {
                 "By size and kind: the structure with the shortest mean time of each kind of work is the fastest, or shares \
-                 the first place, for all sizes and kinds of meshes."
+                 the first place, for all sizes and kinds in the table “Fastest by size and kind of mesh”."
                     .into()
             }
         });

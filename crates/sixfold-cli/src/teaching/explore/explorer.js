@@ -218,6 +218,7 @@ export class Explorer {
     const { state, view: { focus, relation, element } } = shown;
     const walk = walkFor(shown.view.walk, focus, element);
     shown.view.walk = walk;
+    if (walk.trim() === "") return;
     const edits = asked.find(({ structures }) => structures.includes(focus))?.edits ?? [];
     const ask = { walk: { walk: walk.replace(/\n(?!\s*else\b)/g, ";\n"), expect: { relation, element } } };
     try {

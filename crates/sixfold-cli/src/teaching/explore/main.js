@@ -70,6 +70,8 @@ class Page {
     for (const [name, card] of this.cards) {
       card.at(view.time);
       card.element.classList.toggle("front", name === view.focus);
+      // A screen reader says the steps of the structure in front.
+      card.now.setAttribute("aria-live", name === view.focus ? "polite" : "off");
     }
     for (const card of this.cards.values()) card.reveal();
     this.mark();

@@ -6,6 +6,13 @@ const KINDS = ["vertex", "edge", "face"];
 const SHORT = { vertex: "V", edge: "E", face: "F" };
 const PLURAL = { vertex: "vertices", edge: "edges", face: "faces" };
 
+// A relation in words: `the faces around`.
+export function wordsOf(relation) {
+  const [from, to] = relation.split("_");
+  const between = { vertex: "around", edge: "at", face: "of" }[from];
+  return `the ${to} ${from === "vertex" && to === "vertices" ? "beside" : between}`;
+}
+
 // The field with the chosen element.
 export function elementField(explorer) {
   const field = el("input", { value: explorer.view.element, size: 9, "aria-label": "Element", id: "element", spellcheck: "false" });
@@ -31,7 +38,8 @@ export function relations(explorer) {
     const name = `${from}_${PLURAL[to]}`;
     const choose = () => explorer.run(() => explorer.chooseRelation(name));
     return el("td", {}, button(`${SHORT[from]}${SHORT[to]}`, choose, {
-      title: `${name}: the ${PLURAL[to]} of ${from === "edge" ? "an" : "a"} ${from}`,
+      title: `${wordsOf(name)} ${from === "edge" ? "an" : "a"} ${from} (${name})`,
+      "aria-label": `${wordsOf(name)} ${from === "edge" ? "an" : "a"} ${from}, ${SHORT[from]}${SHORT[to]}`,
       "data-relation": name,
       "aria-pressed": String(name === relation),
     }));
@@ -46,7 +54,7 @@ export function queryPanel(explorer) {
     relations(explorer),
     el("div", { class: "grow" },
       el("p", {}, elementField(explorer)),
-      el("p", {}, el("b", {}, relation.replace("_", " ")), ` of ${element}. Click an element on the mesh, choose a relation, and step: `,
+      el("p", {}, el("b", {}, wordsOf(relation)), ` ${element} (${relation}). Click an element on the mesh, choose a relation, and step: `,
         "each structure reads the rows that it needs.")),
   ];
 }

@@ -74,11 +74,14 @@ function stencilTable(stencil, level) {
     parents.map(({ vertex, weight }) => el("tr", {}, el("th", { scope: "row" }, vertex), el("td", { class: "count" }, fraction(weight)))));
 }
 
-// A weight as a fraction of a power of two, if it is one, else as a number.
+// The denominators of weights: those of regular vertices, and of vertices of other valences with rational weights.
+const DENOMINATORS = [...Array.from({ length: 64 }, (_, i) => i + 1), 96, 128, 144, 192, 256, 384, 512, 576, 1024];
+
+// A weight as a fraction, if it is one of single precision, else as a number.
 export function fraction(weight) {
-  for (let below = 1; below <= 1024; below *= 2) {
-    const above = weight * below;
-    if (Math.abs(above - Math.round(above)) < 1e-5 && Math.round(above) !== 0) return below === 1 ? `${Math.round(above)}` : `${Math.round(above)}/${below}`;
+  for (const below of DENOMINATORS) {
+    const above = Math.round(weight * below);
+    if (above !== 0 && Math.abs(weight - above / below) < 2e-7) return below === 1 ? `${above}` : `${above}/${below}`;
   }
   return weight.toFixed(4);
 }

@@ -1,10 +1,10 @@
 // The panel of walks: a walk that the student writes, in the words of one structure.
 
 import { button, count, el, select, withCode } from "./dom.js";
-import { elementField, relations } from "./query.js";
+import { elementField, relations, wordsOf } from "./query.js";
 
-// A walk to begin with for each structure, at v0: around the vertex, as far as its fields lead.
-const EXAMPLES = {
+// A walk around v0 on each structure, as far as its fields lead.
+const AROUND = {
   "polygon-soup": "yield face(c0)",
   "indexed-face-set": "yield vertex(c0)",
   "face-vertex": "yield face(first(v0))",
@@ -25,11 +25,14 @@ repeat {
 }`,
 };
 
-// The walk to run: an empty one, and an example of another structure or element, become the example of this one.
+// The walk around an element on a structure.
+const around = (structure, element) =>
+  (AROUND[structure] ?? "").replaceAll("v0", /^v\d+$/.test(element) ? element : "v0");
+
+// The walk to run: that around an element on another structure becomes that on this one.
 export function walkFor(walk, structure, element) {
-  const isExample = walk.trim() === "" || Object.values(EXAMPLES).includes(walk.replace(/\bv\d+/g, "v0"));
-  if (!isExample) return walk;
-  return (EXAMPLES[structure] ?? "").replaceAll("v0", /^v\d+$/.test(element) ? element : "v0");
+  const isShown = walk.trim() !== "" && Object.values(AROUND).includes(walk.replace(/\bv\d+/g, "v0"));
+  return isShown ? around(structure, element) : walk;
 }
 
 export function walkPanel(explorer) {
@@ -38,21 +41,32 @@ export function walkPanel(explorer) {
   text.value = walk;
   text.addEventListener("input", () => { explorer.view.walk = text.value; });
   const run = () => explorer.run(() => explorer.look({ walk: text.value }));
+  const solution = around(focus, element);
+  const isSolution = relation === "vertex_vertices" && solution.includes("repeat");
+  const hint = el("p", { class: "hint", id: "walk-hint", role: "status" });
+  const show = () => explorer.run(() => explorer.look({ walk: solution }));
   const columns = (explorer.base.records.get(focus)?.records ?? []).flatMap((table) => table.columns);
   const isOnly = ({ table }) => columns.filter((column) => column.table === table).length === 1;
   const words = columns.flatMap((column) => (isOnly(column) ? [column.name, column.table] : [column.name]));
   const answer = explorer.timelines.get(focus)?.answer;
+  const result = explorer.failed
+    ? el("p", { class: "refusal", id: "walk-result" }, explorer.failed)
+    : walkResult(answer);
   return [
     relations(explorer),
     el("div", { class: "grow" },
       el("p", {}, elementField(explorer)),
-      el("p", {}, "A walk in the words of ",
+      el("p", {}, "Write a walk in the words of ",
         select(explorer.structures, focus, (name) => explorer.run(() => explorer.look({ focus: name })), { "aria-label": "Structure" }),
-        `, compared with ${relation} of ${element}: `, button("Run", run, { class: "main", id: "run-walk" })),
+        ` that yields ${wordsOf(relation)} ${element}, and nothing else: `, button("Run", run, { class: "main", id: "run-walk" })),
       text,
+      walk.trim() === "" ? null : result,
+      el("p", { class: "buttons" },
+        button("Hint", () => { hint.replaceChildren(...withCode(`Begin with \`${solution.split("\n")[0]}\`.`)); }, { id: "hint" }),
+        button(isSolution ? "Show a solution" : `Show a walk from ${element} as far as the fields lead`, show, { id: "solution" })),
+      hint,
       el("p", { class: "hint" }, "Fields: ", [...new Set(words)].map((name) => name.replace(/[ -]/g, "_")).join(", "),
         ...withCode(". Statements: `h = VALUE`, `yield VALUE`, `repeat { … }`, `if VALUE = VALUE { … } else { … }`; a value is a name, a row such as `v3`, `none`, or `next(h)`."))),
-    explorer.failed ? el("p", { class: "refusal", id: "walk-result" }, explorer.failed) : walkResult(answer),
   ];
 }
 
