@@ -19,7 +19,7 @@ import tempfile
 from browser import Browser
 
 STRUCTURES = ["polygon-soup", "indexed-face-set", "face-vertex", "winged-edge", "half-edge", "corner-table"]
-SIZES = {"laptop": (1440, 900), "projector": (1024, 768), "telephone": (390, 844)}
+SIZES = {"laptop": (1440, 900), "projector": (1024, 768), "beside": (864, 768), "tablet": (821, 1000), "telephone": (390, 844)}
 MAX_BYTES = 3_000_000
 
 # The counters and the results of each structure.
@@ -347,6 +347,38 @@ def check_remedies(page, path):
     check(offered > 30, offered)
 
 
+VISIBLE = """
+    return Object.fromEntries([...document.querySelectorAll('.card')].filter(card => !card.hidden).map(card => [card.dataset.structure,
+        Math.max(...[...card.querySelectorAll('.scroll')].map(table => {
+            const box = table.getBoundingClientRect(), head = table.querySelector('thead').getBoundingClientRect().bottom;
+            return [...table.querySelectorAll('tbody tr')].map(row => row.getBoundingClientRect())
+                .filter(row => row.top >= head - 1 && row.bottom <= box.bottom + 1).length;
+        }))]))
+"""
+
+
+def check_shown(page, path):
+    """Two structures that are shown have the room of all six, and stay chosen in a link."""
+    page.open(path)
+    check(set(page.browser.run(VISIBLE)) == set(STRUCTURES), "all are shown")
+    for name in STRUCTURES:
+        if name not in ("half-edge", "corner-table"):
+            page.click(f"[data-shown={name}]")
+    rows = page.browser.run(VISIBLE)
+    check(set(rows) == {"half-edge", "corner-table"} and min(rows.values()) >= 12, rows)
+    page.click("#share-button")
+    link = page.browser.run("return document.getElementById('link').value")
+    page.open(path, link[link.index("#"):])
+    check(page.browser.run(VISIBLE) == rows, page.browser.run(VISIBLE))
+    page.click("[data-shown=half-edge]")
+    page.click("[data-shown=corner-table]")
+    # The last one stays, and it is in front.
+    check(list(page.browser.run(VISIBLE)) == ["corner-table"], page.browser.run(VISIBLE))
+    check(page.browser.run("return document.querySelector('.card.front').dataset.structure") == "corner-table", "in front")
+    page.click("[data-tab=check]")
+    check(page.browser.run("return document.getElementById('chosen').hidden"), "no choice without cards")
+
+
 def check_failure(page, path):
     """The engine fails once: the page shows it, starts the engine again, and has lost nothing."""
     page.open(path)
@@ -511,6 +543,12 @@ def check_sizes(page, path, folder):
                 page.click("#next")
             wide = page.browser.run("return document.documentElement.scrollWidth")
             check(wide <= width, name, "is", wide, "pixels wide")
+            over = page.browser.run("""
+                const race = document.getElementById('race').getBoundingClientRect(), cards = document.getElementById('cards').getBoundingClientRect();
+                return Math.min(race.right, cards.right) - Math.max(race.left, cards.left) > 1
+                    && Math.min(race.bottom, cards.bottom) - Math.max(race.top, cards.top) > 1;
+            """)
+            check(not over, name, "the counters are over the cards")
             for button in ("#next", "#undo", "#share-button", "[data-tab=edit]"):
                 box = page.browser.run("const box = document.querySelector(arguments[0]).getBoundingClientRect(); return [box.width, box.height]", button)
                 check(min(box) >= 24, name, button, box)
@@ -541,7 +579,7 @@ def main():
         try:
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+            for part in (check_queries, check_shown, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
                          check_walks, check_measurements, check_levels, check_lessons):
                 part(page, path)
                 check_quiet(browser)

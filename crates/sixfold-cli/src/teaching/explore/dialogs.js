@@ -85,7 +85,7 @@ export function helpDialog(version) {
   ];
   openDialog("Help", [
     el("p", {}, "Six data structures hold the same mesh. Choose an element and a relation: each structure finds the answer in its own tables. The row that is read is lit, the counters show the cost. The programs are those of Sixfold: this page runs its code."),
-    el("p", {}, "A field with a * is not stored: it follows from the number of the row, or from other fields. Click the name of a structure to see its steps on the mesh."),
+    el("p", {}, "A field with a * is not stored: it follows from the number of the row, or from other fields. Click the name of a structure to see its steps on the mesh. The buttons above the cards choose which structures are shown: two have room for their tables."),
     el("p", {}, el("b", {}, "Query"), " steps through one of nine relations. ", el("b", {}, "Edit"), " changes the mesh, and shows which rows are rewritten; a structure that refuses an edit stays as it was until you undo it. ", el("b", {}, "Your walk"), " runs what you write. ", el("b", {}, "Subdivide"), " shows levels, and the weights of a point. ", el("b", {}, "Check"), " shows who refuses the mesh, and repairs it. ", el("b", {}, "Measure"), " times queries in this browser. With ", el("b", {}, "quiz"), ", click the row that is read next."),
     el("table", { class: "list" }, keys.map(([key, what]) => el("tr", {}, el("th", { scope: "row" }, key), el("td", {}, what)))),
     el("p", { class: "hint" }, `Sixfold ${version}. No data leaves this page.`),

@@ -335,6 +335,23 @@ export class Explorer {
     await this.look({ relation, element: isKind ? element : elementLike(this.model, element, kind) });
   }
 
+  // The structures whose cards are shown, in their order.
+  get shown() {
+    const names = this.view.only.split(",");
+    const shown = this.structures.filter((name) => names.includes(name));
+    return shown.length ? shown : this.structures;
+  }
+
+  // Shows or hides the card of a structure. One card stays.
+  toggle(structure) {
+    const isShown = this.shown.includes(structure);
+    const shown = this.structures.filter((name) => (name === structure ? !isShown : this.shown.includes(name)));
+    if (shown.length === 0) return;
+    this.view.only = shown.length === this.structures.length ? "" : shown.join(",");
+    if (!shown.includes(this.view.focus)) [this.view.focus] = shown;
+    this.tell("all");
+  }
+
   // Marks elements on the mesh.
   mark(names) {
     this.marked = names;

@@ -102,6 +102,11 @@ class Page {
     }
     keepingFocus(() => find("panel").replaceChildren(...panel(explorer)));
     find("cards").hidden = !TABS_WITH_CARDS.includes(view.tab);
+    find("chosen").hidden = !TABS_WITH_CARDS.includes(view.tab) || view.tab === "walk";
+    keepingFocus(() => find("chosen").replaceChildren("shown: ", ...explorer.structures.map((name) => button(name, () => explorer.toggle(name), {
+      "data-shown": name, "aria-pressed": String(explorer.shown.includes(name)), style: `--colour: var(--${name}, var(--other))`,
+      title: `show or hide ${name}`,
+    }))));
     find("cards").classList.toggle("single", view.tab === "walk");
     find("player").hidden = view.tab !== "query" && view.tab !== "walk";
     for (const [name, card] of this.cards) this.showCard(name, card);
@@ -125,7 +130,7 @@ class Page {
         explorer.withSubject({ ...explorer.subject, triangulate: true }))));
     }
     card.follow(explorer.timelines.get(name));
-    card.element.hidden = view.tab === "walk" && name !== view.focus;
+    card.element.hidden = view.tab === "walk" ? name !== view.focus : !explorer.shown.includes(name);
   }
 
   showLesson() {

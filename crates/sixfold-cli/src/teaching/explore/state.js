@@ -35,6 +35,8 @@ export function defaultView() {
     element: "v0",
     relation: "vertex_vertices",
     focus: "half-edge",
+    // The structures that are shown, with commas between their names; all if it is empty.
+    only: "",
     time: 0,
     walk: "",
     scheme: "loop",
