@@ -41,12 +41,12 @@ struct SampleRow<'r> {
     operation: &'r str,
     backend: &'r str,
     launch: u32,
-    first_run: bool,
     round: Option<u32>,
     cpu_ns: Option<f64>,
     wall_ns: Option<f64>,
     faults: Option<u64>,
     slowdown: Option<f64>,
+    first_run: bool,
 }
 
 impl Results {
@@ -207,5 +207,62 @@ pub(crate) fn into_io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(cause) => cause,
         other => io::Error::other(format!("{other:?}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Results;
+    use crate::findings::study::Report;
+    use crate::rows::{ResultRow, Samples};
+
+    /// Launch 0 had only time for a first run, launch 1 had no time, and launch 2 has two samples.
+    #[test]
+    fn a_launch_without_samples_has_a_row_for_its_first_run() {
+        let mut all = Results::default();
+        all.add(
+            Report {
+                results: vec![
+                    ResultRow {
+                        median_ns: Some(7.0),
+                        launch_ns: vec![Some(6.0), None, Some(8.0)],
+                        ..ResultRow::new("half-edge", "build", "face")
+                    },
+                    ResultRow {
+                        median_ns: Some(5.0),
+                        warm_up_only: true,
+                        ..ResultRow::new("winged-edge", "build", "face")
+                    },
+                ],
+                samples: vec![Samples {
+                    backend: "half-edge".into(),
+                    operation: "build".into(),
+                    launches: vec![2, 2],
+                    rounds: vec![4, 5],
+                    wall_ns: vec![8.0, 9.0],
+                    ..Samples::default()
+                }],
+                ..Report::default()
+            }
+            .into(),
+        );
+        let mut text = Vec::new();
+        all.write_samples_csv(&mut text).expect("memory");
+        let text = String::from_utf8(text).expect("text");
+        let rows: Vec<&str> = text
+            .lines()
+            .skip(1)
+            .filter_map(|line| line.split_once("build,"))
+            .map(|(_, row)| row)
+            .collect();
+        assert_eq!(
+            rows,
+            [
+                "half-edge,2,4,,8.0,,,false",
+                "half-edge,2,5,,9.0,,,false",
+                "half-edge,0,,6.0,,,,true",
+                "winged-edge,0,,5.0,,,,true",
+            ]
+        );
     }
 }
