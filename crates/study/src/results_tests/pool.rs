@@ -226,6 +226,7 @@ fn the_fastest_method_is_unknown_if_a_faster_one_may_exist() {
     let found: Vec<(&str, bool, f64)> = rows
         .iter()
         .map(|row| (row.backend.as_str(), row.bound, row.ratio_to_best))
+        .map(|(name, bound, ratio)| (name, bound, (1e9 * ratio).round() / 1e9))
         .collect();
     assert_eq!(
         found,
@@ -337,10 +338,10 @@ fn meshes_are_grouped_by_size_and_kind_with_equal_weight() {
         row.ratio_to_best
     };
     // 1 on three small meshes and the grid, 4 on the large mesh: both sizes have equal weight. Half-edge is the fastest on
-    // average: 1 on all but the grid, where it is 3.
+    // average: 1 on all but the grid, where it is 3. The means have three digits.
     let expected = 2.0 / 3_f64.powf(1.0 / 8.0);
     assert!(
-        (face_vertex(0) - expected).abs() < 1e-9,
+        (face_vertex(0) - expected).abs() < 0.01,
         "{}",
         face_vertex(0)
     );
