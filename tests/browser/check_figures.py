@@ -97,6 +97,7 @@ class Page:
         tables = list(find(self.root, "table", **{"class": "operations"}))
         for table in tables[:1]:
             self.check_operations(table)
+            self.check_building(table, words)
         return self
 
     def check_operations(self, table):
@@ -132,6 +133,18 @@ class Page:
                     if there and back and back[place] and not cell.is_bound:
                         product = number(there.split(" ")[0]) * number(back[place].split(" ")[0])
                         self.expect(is_near(product, 1, 2 * ROUNDING), f"{where}: {there} × {other}, but {back[place]} back")
+
+    def check_building(self, table, words):
+        """Building is one operation: its sentence has the ratio and the interval of the table."""
+        found = re.search(r"Building[^:]*: [^;]*; ([a-z-]+) takes ([\d.,]+) × \(([\d.,]+ to [\d.,]+)", words)
+        if not found:
+            return
+        backend, ratio, ends = found.groups()
+        [head] = find(table, "thead")
+        place = [text(cell) for cell in find(head, "th")].index(backend)
+        row = next(row for row in find(table, "tr") if row[1].get("data-operation") == "build")
+        cell = Cell(row[2][place])
+        self.expect((ratio, ends) == (cell.figure, cell.ends), f"build on {backend}: {ratio} × ({ends}) in the sentence, {cell.figure} × ({cell.ends}) in the table")
 
     def check_cell(self, where, cell, best):
         if cell.ratio is None:

@@ -425,9 +425,7 @@ pub(crate) fn how_sure(study: &Report) -> Option<String> {
 
 /// Returns what gives about enough samples for a winner; `None` if this is unknown.
 fn enough(study: &Report) -> Option<String> {
-    let open = study.results.iter();
-    let open = open.filter(|row| row.median_ns.is_some() && row.standing.is_none());
-    let open = open.filter(|row| !row.has_enough_samples());
+    let open = study.results.iter().filter(|row| row.is_provisional());
     let settings = &study.run.settings;
     let known = |row: &ResultRow| match settings.launches {
         Some(_) => row.launch_ns.iter().flatten().count(),

@@ -266,6 +266,11 @@ impl ResultRow {
         has_enough(self.samples, &self.launch_ns)
     }
 
+    /// Returns whether the time is from too few samples to say how it compares with the fastest.
+    pub fn is_provisional(&self) -> bool {
+        self.median_ns.is_some() && self.standing.is_none() && !self.has_enough_samples()
+    }
+
     /// Returns `first_ns` divided by `median_ns`; `None` if a value is unknown.
     pub fn first_ratio(&self) -> Option<f64> {
         let (first, median) = self.first_ns.zip(self.median_ns)?;

@@ -96,10 +96,7 @@ impl Report {
 
     /// Returns whether a time of an operation is from too few samples to name the fastest backend.
     pub fn is_provisional(&self, operation: &str) -> bool {
-        let mut open = self.rows(operation);
-        open.any(|row| {
-            row.median_ns.is_some() && row.standing.is_none() && !row.has_enough_samples()
-        })
+        self.rows(operation).any(ResultRow::is_provisional)
     }
 
     /// Returns whether at least one operation of a purpose has enough samples to be ranked.

@@ -238,6 +238,13 @@ impl<'a, 's> Cases<'a, 's> {
 
     /// Returns the quotient of the means of two backends.
     pub(super) fn quotient(&self, own: usize, other: usize) -> Quotient {
+        // As the same times are compared in the table of all operations.
+        if self.is_single
+            && self.studies.len() > 1
+            && let Some(quotient) = self.quotient_of_times(own, other)
+        {
+            return quotient;
+        }
         let [owns, others] = [own, other].map(|place| self.means(|case| case.times[place]));
         let both = owns.into_iter().zip(others);
         let quotient = |own: f64, other: f64| match self.is_single {
@@ -265,7 +272,7 @@ impl<'a, 's> Cases<'a, 's> {
     }
 
     /// Returns the quotient of the mean times of two backends, on the meshes on which both were measured; for cases of one
-    /// operation. A reader who divides the means of the times gets the ratio.
+    /// task. A reader who divides the means of the times gets the ratio.
     pub(super) fn quotient_of_times(&self, own: usize, other: usize) -> Option<Quotient> {
         let confidence = confidence(self.studies);
         let measured = self.cases.iter().filter_map(|case| {
