@@ -252,8 +252,8 @@ mod tests {
         };
         let [slower, undecided, equal] =
             [Standing::Slower, Standing::Undecided, Standing::Equal].map(Some);
-        // The samples of a mesh have an interval, but a mean over one mesh has none.
-        assert_eq!(mean(&[3.0]), None);
+        // A mean over one mesh has the interval of its samples.
+        assert_eq!(mean(&[3.0]), slower);
         assert_eq!(mean(&[3.0, 1.2]), slower);
         assert_eq!(mean(&[3.0, 1.05]), undecided);
         assert_eq!(mean(&[3.0, 0.9]), undecided);

@@ -240,7 +240,6 @@ impl<'a, 's> Cases<'a, 's> {
     pub(super) fn quotient(&self, own: usize, other: usize) -> Quotient {
         // As the same times are compared in the table of all operations.
         if self.is_single
-            && self.studies.len() > 1
             && let Some(quotient) = self.quotient_of_times(own, other)
         {
             return quotient;
@@ -293,7 +292,10 @@ impl<'a, 's> Cases<'a, 's> {
             let [low, high] = quotient.interval?;
             half_width(low, high)
         });
-        let interval = with_errors(interval, mean_ratio, half_widths);
+        let interval = match &measured[..] {
+            [(_, quotient, [own, other])] => interval_of_rows(quotient, own.row, other.row),
+            _ => with_errors(interval, mean_ratio, half_widths),
+        };
         let ratio = shown_ratio(mean_time(0)?, mean_time(1)?);
         let ratios = measured.iter().map(|(_, quotient, _)| quotient.ratio);
         Some(Quotient {
@@ -306,19 +308,15 @@ impl<'a, 's> Cases<'a, 's> {
     }
 
     /// Returns the interval of the quotient of two means on one mesh, from those of the quotients of the times, whose
-    /// errors are independent. Two methods of a subdivision scheme may have no launch in common.
+    /// errors are independent.
     fn interval_on_mesh(&self, study: &Report, own: usize, other: usize) -> Option<[f64; 2]> {
         let (mut log, mut squares) = (0.0, 0.0);
         for case in &self.cases {
             let (own, other) = (case.times[own].row, case.times[other].row);
             let quotient = study.quotient_of_rows(own, other)?;
-            let apart = |row: &ResultRow| half_width(row.ci_low_ns?, row.ci_high_ns?);
-            let (centre, error) = match quotient.interval {
-                Some([low, high]) => (f64::sqrt(low * high), half_width(low, high)?),
-                None => (quotient.ratio, apart(own)?.hypot(apart(other)?)),
-            };
-            log += centre.ln();
-            squares += error.powi(2);
+            let [low, high] = interval_of_rows(&quotient, own, other)?;
+            log += (low * high).sqrt().ln();
+            squares += half_width(low, high)?.powi(2);
         }
         let count = self.cases.len() as f64;
         let (centre, error) = ((log / count).exp(), squares.sqrt() / count);
@@ -336,4 +334,14 @@ impl<'a, 's> Cases<'a, 's> {
             }
         }
     }
+}
+
+/// Returns the interval of the quotient of two rows of one study. Two methods of a subdivision scheme may have no launch in
+/// common; then it is from the intervals of the two times.
+fn interval_of_rows(quotient: &Quotient, own: &ResultRow, other: &ResultRow) -> Option<[f64; 2]> {
+    let apart = |row: &ResultRow| half_width(row.ci_low_ns?, row.ci_high_ns?);
+    quotient.interval.or_else(|| {
+        let factor = apart(own)?.hypot(apart(other)?).exp();
+        Some([quotient.ratio / factor, quotient.ratio * factor])
+    })
 }
