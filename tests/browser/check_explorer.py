@@ -8,6 +8,7 @@ for times.
 """
 
 import base64
+import csv
 import json
 import math
 import pathlib
@@ -42,14 +43,19 @@ return shown;
 
 
 class Page:
-    def __init__(self, browser, respond):
+    def __init__(self, browser, sixfold, respond):
         self.browser = browser
+        self.sixfold = sixfold
         self.respond = respond
+        written = subprocess.run([sixfold, "lessons", "--json", "-"], check=True, capture_output=True, text=True)
+        self.lessons = json.loads(written.stdout)
 
-    def open(self, path, hash=""):
-        """Opens the page, also if only the part after # is another one."""
+    def open(self, path, hash="", keeps=False):
+        """Opens the page, also if only the part after # is another one. Unless it `keeps` it, what the browser kept is gone."""
         browser = self.browser
         browser.ask("POST", f"{browser.session}/url", {"url": "about:blank"})
+        if not keeps:
+            browser.devtools("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
         browser.ask("POST", f"{browser.session}/url", {"url": path.resolve().as_uri() + hash})
         browser.wait("return document.documentElement.dataset.ready === 'yes'")
 
@@ -516,21 +522,130 @@ def check_levels(page, path):
 
 
 def check_lessons(page, path):
-    """Opens each lesson, and shows all that its commands show."""
+    """Opens each lesson, shows all that its commands show, and answers all questions, with answers that the native program
+    works out: wrong ones first, and then the right ones. The program grades the file of answers."""
+    lessons = page.lessons
     page.open(path)
     page.click("#lessons-button")
     names = page.browser.run("return [...document.querySelectorAll('[data-lesson]')].map(one => one.dataset.lesson)")
-    check(len(names) == 20, names)
-    shown = 0
-    for name in names:
-        page.open(path, f"#lesson={name}")
-        count = page.browser.run("return document.querySelectorAll('#lesson .show').length")
-        for i in range(count):
+    check(names == [lesson["name"] for lesson in lessons], names)
+    asked = 0
+    for lesson in lessons:
+        page.click(f"[data-lesson={lesson['name']}]")
+        sections = page.browser.run("return document.querySelectorAll('#lesson .section').length")
+        check(sections == 1, lesson["name"], sections)
+        for part in lesson["parts"]:
+            if "question" not in part:
+                continue
+            answer_question(page, part)
+            asked += len(part.get("asks", []))
+            check("Next" not in page.text("#lesson .question:last-of-type"))
+            if page.text("#lesson-next"):
+                page.click("#lesson-next")
+        count = len([part for part in lesson["parts"] if "question" in part])
+        right = len([part for part in lesson["parts"] if part.get("asks")])
+        check(page.text("#progress") == f"{count} of {count} question{'' if count == 1 else 's'} answered, {right} right", page.text("#progress"))
+        shows = page.browser.run("return document.querySelectorAll('#lesson .show').length")
+        for i in range(shows):
             page.browser.run("document.querySelectorAll('#lesson .show')[arguments[0]].click()", i)
             page.settle()
-            check(page.text("#message") == "", name, i, page.text("#message"))
-            shown += 1
-    check(shown > 30, shown)
+            check(page.text("#message") == "", lesson["name"], page.text("#message"))
+        page.click("#lesson .link")
+    check(asked > 60, asked, "values are asked for")
+    page.type("#student", "Ada =1+1")
+    text = saved(page, "#save-answers")
+    check_reload(page, path)
+    check_grades(page, text, lessons)
+
+
+def answer_question(page, part):
+    """Answers the question of a lesson."""
+    names = ["polygon-soup", "corner-table"]
+    wrong = {"number": lambda truth: truth + 1, "list": lambda truth: [name for name in names if name not in truth][:1], "text": lambda truth: ""}
+    element = f"[data-question='{part['id']}']"
+    if not part.get("asks"):
+        page.click(f"[data-check='{part['id']}']")
+        check(page.text(f"{element} .feedback").startswith("Give an answer"), part)
+        page.browser.run("document.querySelector(arguments[0]).value = arguments[1]", f"{element} textarea", "<b>because</b>")
+        page.click(f"[data-check='{part['id']}']")
+        check("because" in page.text(element) and page.text(f"{element} .solution"), part)
+        return
+    for is_right in (False, True):
+        for i, ask in enumerate(part["asks"]):
+            truth = ask["truth"]
+            kind = "list" if isinstance(truth, list) else "text" if "options" in ask else "number"
+            value = truth if is_right else wrong[kind](truth) if kind != "text" else next(one for one in ask["options"] if one != truth)
+            page.browser.run("""
+                const field = document.querySelectorAll(`${arguments[0]} > p`)[arguments[1] + 1];
+                const value = arguments[2];
+                if (Array.isArray(value)) for (const box of field.querySelectorAll("input")) box.checked = value.includes(box.value);
+                else field.querySelector("input, select").value = String(value);
+            """, element, i, value)
+        if not is_right and page.browser.run("return !!document.querySelector(arguments[0])", f"[data-hint='{part['id']}']"):
+            page.click(f"[data-hint='{part['id']}']")
+            check(page.text(f"{element} .feedback").startswith("Hint: "), part)
+        page.click(f"[data-check='{part['id']}']")
+        if not is_right:
+            check(page.text(f"{element} .feedback").startswith("Not yet: ") and not page.text(f"{element} .solution"), part, page.text(element))
+    check(page.text(f"{element} .solution") and "✓" in page.text(element) and "you:" not in page.text(element), part, page.text(element))
+
+
+def saved(page, selector):
+    """The text of a file that a button offers."""
+    page.browser.run("""
+        window.offered = null;
+        const make = URL.createObjectURL;
+        URL.createObjectURL = (blob) => { blob.text().then((text) => { window.offered = text; }); URL.createObjectURL = make; return "data:,"; };
+    """)
+    page.click(selector)
+    return page.browser.wait("return window.offered")
+
+
+def check_reload(page, path):
+    """Answers, mesh and edits come back after a reload, until they are forgotten; without room for them, this is said once."""
+    page.open(path)
+    page.edit("poke_face f0")
+    page.click("#lessons-button")
+    page.click("[data-lesson=flip]")
+    page.browser.wait("return JSON.parse(localStorage.getItem('sixfold-explorer') ?? '{}').state?.includes('triangulate')")
+    page.click("#lesson-next" if page.text("#lesson-next:enabled") else "#open-all")
+    page.edit("flip_edge v0-v2")
+    page.browser.wait("return JSON.parse(localStorage.getItem('sixfold-explorer')).state.includes('flip_edge')")
+    before = [page.text(one) for one in ("#mesh-name", "#mesh-size", "#lesson")]
+    page.open(path, keeps=True)
+    check([page.text(one) for one in ("#mesh-name", "#mesh-size", "#lesson")] == before, "after a reload")
+    check(not page.browser.run("return document.getElementById('undo').disabled"))
+    page.click("#lesson .link")
+    page.click("#forget")
+    page.click("#forget")
+    page.browser.run("localStorage.setItem('sixfold-explorer', '{\"own\": 1, \"course\": {\"answers\": {\"x\": 7}, \"sections\": [1]}}')")
+    page.open(path, keeps=True)
+    check(page.text("#mesh-name") == "octahedron" and page.text("#message") == "")
+    page.browser.run("Storage.prototype.setItem = () => { throw new DOMException('full', 'QuotaExceededError'); }")
+    page.type("#element", "v1")
+    page.browser.wait("return document.getElementById('message').textContent.includes('local storage')")
+    page.click("#message button")
+    page.type("#element", "v2")
+    page.browser.run("return new Promise((done) => setTimeout(done, 700))")
+    check(page.text("#message") == "", page.text("#message"))
+
+
+def check_grades(page, text, lessons):
+    """The program grades the file of answers, and names what was changed or belongs to another lesson."""
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = pathlib.Path(scratch)
+        good, changed = scratch / "good.json", scratch / "changed.json"
+        good.write_text(text)
+        changed.write_text(text.replace('"tries":2', '"tries":1'))
+        graded = subprocess.run([page.sixfold, "lessons", "--check", good, "--csv", scratch / "all.csv"], capture_output=True, text=True)
+        check(graded.returncode == 0 and "Ada =1+1" in graded.stdout, graded)
+        for lesson in lessons:
+            right = len([part for part in lesson["parts"] if part.get("asks")])
+            check(re.search(rf"{lesson['name']} +{right} of {right} ", graded.stdout), lesson["name"], graded.stdout)
+        rows = list(csv.DictReader((scratch / "all.csv").open()))
+        check({row["right"] for row in rows} == {"true", ""} and {row["student"] for row in rows} == {"Ada =1+1"}, rows[0])
+        both = subprocess.run([page.sixfold, "lessons", "--check", good, changed], capture_output=True, text=True)
+        check(both.returncode == 1 and "changed.json: was changed after the export" in both.stderr, both)
 
 
 def check_sizes(page, path, folder):
@@ -577,7 +692,7 @@ def main():
         check(path.stat().st_size <= MAX_BYTES, path.stat().st_size, "bytes")
         browser = Browser()
         try:
-            page = Page(browser, respond)
+            page = Page(browser, sixfold, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
             for part in (check_queries, check_shown, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
                          check_walks, check_measurements, check_levels, check_lessons):

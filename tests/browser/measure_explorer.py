@@ -67,7 +67,7 @@ def main():
         print(f"page: {path.stat().st_size} bytes\n{'':<44} {'median':>8} {'largest':>8}")
         browser = Browser()
         try:
-            page = Page(browser, None)
+            page = Page(browser, sixfold, None)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
             opened = []
             for _ in range(OPENINGS):

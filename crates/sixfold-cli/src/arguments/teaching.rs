@@ -193,6 +193,12 @@ pub(crate) struct Lessons {
     /// Write all lessons as JSON, with the output of their commands, for the explorer (- for standard output)
     #[arg(long, value_name = "FILE", conflicts_with = "name")]
     pub(crate) json: Option<PathBuf>,
+    /// Grade files of answers that students exported from the page of `sixfold explore`
+    #[arg(long, value_name = "ANSWERS", num_args = 1.., conflicts_with_all = ["name", "export", "markdown", "json"])]
+    pub(crate) check: Vec<PathBuf>,
+    /// With --check: write each answer as a row of CSV (- for standard output)
+    #[arg(long, value_name = "FILE", requires = "check")]
+    pub(crate) csv: Option<PathBuf>,
 }
 
 /// Parses `3..7`: the rows 3 to 7.

@@ -4,8 +4,10 @@
 //! (`terminal.rs`), or written as pages of Markdown (`page.rs`), as a site (`site.rs`) and as data for the explorer
 //! (`data.rs`).
 
+mod answers;
 mod command;
 mod data;
+mod grades;
 mod page;
 mod site;
 mod source;
@@ -21,7 +23,7 @@ use crate::output::Output;
 use crate::text::{TextOutput, sanitize, wrap};
 
 /// The lessons, in the order in which a course takes them.
-pub(crate) const LESSONS: [(&str, &str); 20] = [
+pub(crate) const LESSONS: [(&str, &str); 21] = [
     ("six-tables", include_str!("lessons/six-tables.md")),
     ("memory", include_str!("lessons/memory.md")),
     ("relations", include_str!("lessons/relations.md")),
@@ -45,6 +47,7 @@ pub(crate) const LESSONS: [(&str, &str); 20] = [
     ("criteria", include_str!("lessons/criteria.md")),
     ("choose", include_str!("lessons/choose.md")),
     ("exercises", include_str!("lessons/exercises.md")),
+    ("lab", include_str!("lessons/lab.md")),
 ];
 
 /// The first page of the guide.
@@ -90,6 +93,9 @@ pub(crate) fn run(arguments: &Lessons) -> Result<ExitCode, Failure> {
     if let Some(file) = &arguments.json {
         Output::open(file)?.write_json(&data::lessons()?)?;
         return Ok(ExitCode::SUCCESS);
+    }
+    if !arguments.check.is_empty() {
+        return grades::run(&arguments.check, arguments.csv.as_deref());
     }
     let Some(name) = &arguments.name else {
         return list();
@@ -138,7 +144,9 @@ mod tests {
         let mut commands = 0;
         for part in &lesson.parts {
             match part {
-                Part::Question { answer, .. } => assert!(!answer.is_empty(), "{name}: {part:?}"),
+                Part::Question(question) => {
+                    assert!(!question.answer.is_empty(), "{name}: {part:?}");
+                }
                 Part::Command(command) => {
                     commands += 1;
                     assert!(command.line.starts_with("sixfold "), "{name}: {part:?}");
@@ -153,8 +161,13 @@ mod tests {
                 Part::Kept(_) => {}
             }
         }
-        let lines = source.lines().filter(|line| line.starts_with('$')).count();
-        assert_eq!(commands, lines, "{name}");
+        let lines = |mark: &str| source.lines().filter(|line| line.starts_with(mark)).count();
+        assert_eq!(commands, lines("$"), "{name}");
+        let asks = lesson.parts.iter().map(|part| match part {
+            Part::Question(question) => question.asks.len(),
+            _ => 0,
+        });
+        assert_eq!(asks.sum::<usize>(), lines("= "), "{name}");
     }
 
     #[test]
@@ -167,7 +180,7 @@ mod tests {
             };
             assert!(count(|part| matches!(part, Part::Command(_))) > 0, "{name}");
             assert!(
-                count(|part| matches!(part, Part::Question { .. })) > 1,
+                count(|part| matches!(part, Part::Question(_))) > 1,
                 "{name}"
             );
         }

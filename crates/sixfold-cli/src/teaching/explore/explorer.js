@@ -5,6 +5,7 @@ import { EngineFailure } from "./engine.js";
 import { Model, edgeName, parseName } from "./mesh.js";
 import { relationFor } from "./query.js";
 import { defaultView, groups, meshState, pastOf, withEdit } from "./state.js";
+import { newCourse } from "./store.js";
 import { refine } from "./subdivide.js";
 import { Timeline, rowNumber } from "./timeline.js";
 import { walkFor } from "./walk.js";
@@ -26,6 +27,8 @@ export class Explorer {
     // Elements that are marked on the mesh, such as those with a fault.
     this.marked = [];
     this.timelines = new Map();
+    // The answers to the lessons.
+    this.course = newCourse();
     this.listeners = [];
   }
 

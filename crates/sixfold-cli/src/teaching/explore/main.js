@@ -13,6 +13,7 @@ import { Player } from "./player.js";
 import { Quiz } from "./quiz.js";
 import { Race } from "./race.js";
 import { defaultView, fromLink, fromText, meshState } from "./state.js";
+import { Store } from "./store.js";
 import { View } from "./view.js";
 
 // Requests that take longer can be stopped.
@@ -20,9 +21,10 @@ const SLOW_MS = 4000;
 const TABS_WITH_CARDS = ["query", "edit", "walk"];
 
 class Page {
-  constructor(explorer, data) {
+  constructor(explorer, data, store) {
     this.explorer = explorer;
     this.data = data;
+    this.store = store;
     this.quiz = new Quiz(explorer);
     this.view = new View(find("faces"), find("overlay"), (name, more) => this.chosen(name, more));
     this.cards = new Map(data.structures.map(({ name }) => [name, new Card(name, {
@@ -58,7 +60,9 @@ class Page {
   update(what) {
     const { explorer } = this;
     if (what === "busy") return this.showMessage();
+    if (what === "kept") return undefined;
     if (what === "lesson") return this.showLesson();
+    if (what === "lesson-again") return this.showLesson(true);
     // The elements below a pressed button stay until it is released: else its click would be lost.
     if (what === "all" && this.isPressed) {
       this.isWaiting = true;
@@ -133,14 +137,16 @@ class Page {
     card.element.hidden = view.tab === "walk" ? name !== view.focus : !explorer.shown.includes(name);
   }
 
-  showLesson() {
+  // Shows the lesson that is open; `again` after an answer.
+  showLesson(again = false) {
     const { lesson } = this.explorer.view;
     find("lesson").hidden = lesson === null;
     find("lessons-button").setAttribute("aria-expanded", String(lesson !== null));
-    if (this.lesson === lesson) return;
+    if (this.lesson === lesson && !again) return;
+    const isOther = this.lesson !== lesson;
     this.lesson = lesson;
-    if (lesson !== null) find("lesson").replaceChildren(...lessonView(this.explorer, this.data.lessons));
-    find("lesson").scrollTop = 0;
+    if (lesson !== null) find("lesson").replaceChildren(...lessonView(this.explorer, this.data.lessons, { version: this.data.version, store: this.store }));
+    if (isOther) find("lesson").scrollTop = 0;
   }
 
   showMessage() {
@@ -295,15 +301,19 @@ async function start() {
   const data = JSON.parse(find("data").textContent);
   const engine = await Engine.start(await gunzip(fromBase64(find("engine").textContent)));
   const explorer = new Explorer(engine, data.structures.map(({ name }) => name), data.schemes);
-  new Page(explorer, data);
+  const store = new Store(explorer, data.situation);
+  const kept = store.read();
+  explorer.course = kept.course;
+  new Page(explorer, data, store);
   const own = data.situation ? fromText(JSON.stringify(data.situation)) : defaultSituation();
-  await explorer.run(async () => explorer.open((await situationOf(location.hash, data.lessons)) ?? own));
+  await explorer.run(async () => explorer.open((await situationOf(location.hash, data.lessons)) ?? (kept.state ? fromText(kept.state) : own)));
   if (!explorer.state) {
     const { message } = explorer;
     await explorer.run(() => explorer.open(own));
     if (explorer.state) Object.assign(explorer, { message });
     explorer.tell("busy");
   }
+  store.keep();
   document.documentElement.dataset.ready = "yes";
   performance.mark("ready");
 }

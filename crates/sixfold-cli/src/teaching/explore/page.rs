@@ -10,18 +10,20 @@ use super::Situation;
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 /// The lessons with the outputs of their commands, written by `sixfold lessons --json`.
-const LESSONS: &str = include_str!("lessons.json");
+pub(crate) const LESSONS_DATA: &str = include_str!("lessons.json");
 /// The engine (crates/wasm), written by `tests/wasm/build`.
 const ENGINE: &[u8] = include_bytes!("engine.wasm.gz");
 
 /// The scripts, each after those that it imports from.
-const SCRIPTS: [&str; 24] = [
+const SCRIPTS: [&str; 26] = [
     include_str!("dom.js"),
     include_str!("engine.js"),
     include_str!("mesh.js"),
     include_str!("raster.js"),
     include_str!("view.js"),
     include_str!("state.js"),
+    include_str!("store.js"),
+    include_str!("answer.js"),
     include_str!("timeline.js"),
     include_str!("cards.js"),
     include_str!("places.js"),
@@ -122,7 +124,7 @@ fn data(situation: &Situation) -> String {
         "shapes": shapes,
         "situation": situation,
     });
-    let lessons: Value = serde_json::from_str(LESSONS).expect("lessons.json is JSON");
+    let lessons: Value = serde_json::from_str(LESSONS_DATA).expect("lessons.json is JSON");
     data["lessons"] = lessons;
     data.to_string().replace('<', "\\u003c")
 }

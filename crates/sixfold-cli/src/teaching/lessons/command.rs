@@ -2,11 +2,15 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output as Ran};
 
-use super::source::{Kind, Shown};
+use serde_json::Value;
+
+use super::answers::Asked;
+use super::source::{Ask, Expected, Kind, Shown};
 use crate::failure::Failure;
 use crate::output::cannot_write;
+use crate::text::WIDTH;
 
 /// The folder with the files of a lesson.
 pub(super) struct Folder(tempfile::TempDir);
@@ -27,14 +31,7 @@ impl Folder {
 
     /// Runs a command, and returns what it prints.
     pub(super) fn run(&self, command: Shown<'_>, width: usize) -> Result<String, Failure> {
-        let words = shlex::split(command.line).unwrap_or_default();
-        let program = std::env::current_exe().map_err(|cause| cannot_write("a lesson", &cause))?;
-        let run = Command::new(program)
-            .args(words.iter().skip(1))
-            .current_dir(self.path())
-            .env("COLUMNS", width.to_string())
-            .output()
-            .map_err(|cause| cannot_write("a lesson", &cause))?;
+        let run = self.start(command.line, &[], width)?;
         // Progress and times are on standard error.
         let printed = match (run.status.success(), command.kind) {
             (true, Kind::Hidden) => Vec::new(),
@@ -46,6 +43,34 @@ impl Folder {
             true => Err(Failure::usage(format!("{}: {printed}", command.line))),
             false => Ok(printed),
         }
+    }
+
+    fn start(&self, line: &str, more: &[&str], width: usize) -> Result<Ran, Failure> {
+        let words = shlex::split(line).unwrap_or_default();
+        let program = std::env::current_exe().map_err(|cause| cannot_write("a lesson", &cause))?;
+        Command::new(program)
+            .args(words.iter().skip(1))
+            .args(more)
+            .current_dir(self.path())
+            .env("COLUMNS", width.to_string())
+            .output()
+            .map_err(|cause| cannot_write("a lesson", &cause))
+    }
+
+    /// Works out the right value of what a question asks for.
+    pub(super) fn asked(&self, ask: &Ask<'_>) -> Result<Asked, Failure> {
+        let label = ask.label.to_owned();
+        let (line, path) = match ask.expected {
+            Expected::Choice(options) => return Ok(Asked::choice(label, options)),
+            Expected::Computed { line, path } => (line, path),
+        };
+        let ran = self.start(line, &["--json", "-"], WIDTH)?;
+        let document: Value = serde_json::from_slice(&ran.stdout).map_err(|_| {
+            let error = String::from_utf8_lossy(&ran.stderr);
+            Failure::usage(format!("{line}: {error}"))
+        })?;
+        Asked::computed(label, &document, path)
+            .ok_or_else(|| Failure::usage(format!("{line}: it has no value at {path}")))
     }
 }
 

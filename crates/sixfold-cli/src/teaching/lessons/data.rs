@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::LESSONS;
+use super::answers::{Asked, digest};
 use super::command::Folder;
-use super::source::{Kind, Part, read};
+use super::source::{Kind, Part, Question, read};
 use crate::failure::Failure;
 use crate::teaching::explore::Situation;
 use crate::text::WIDTH;
@@ -36,7 +37,13 @@ enum PartData {
     },
     #[serde(untagged)]
     Question {
+        /// Names the question in a file of answers.
+        id: String,
         question: String,
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        asks: Vec<Asked>,
+        #[serde(skip_serializing_if = "String::is_empty")]
+        hint: String,
         answer: String,
     },
 }
@@ -59,10 +66,17 @@ fn lesson(name: &'static str, source: &'static str) -> Result<LessonData, Failur
                 folder.write(name, &content)?;
                 PartData::File { name, content }
             }
-            Part::Question { question, answer } => PartData::Question {
-                question: question.trim().to_owned(),
-                answer,
-            },
+            Part::Question(question) => {
+                let asks = question.asks.iter().map(|ask| folder.asked(ask));
+                let asks = asks.collect::<Result<Vec<Asked>, Failure>>()?;
+                PartData::Question {
+                    id: id_of(name, &question),
+                    question: question.text.trim().to_owned(),
+                    asks,
+                    hint: question.hint,
+                    answer: question.answer,
+                }
+            }
             Part::Picture { caption, .. } => PartData::Text(caption),
             Part::Command(command) => {
                 let output = match command.kind {
@@ -83,4 +97,11 @@ fn lesson(name: &'static str, source: &'static str) -> Result<LessonData, Failur
         title: lesson.title,
         parts,
     })
+}
+
+/// Returns the name of a question in files of answers: it is another one if what is asked is something else.
+fn id_of(lesson: &str, question: &Question<'_>) -> String {
+    let labels = question.asks.iter().map(|ask| ask.label);
+    let parts = [lesson, question.text.trim()].into_iter().chain(labels);
+    digest(&parts.collect::<Vec<_>>().join("\n"))
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::command::{Folder, trace_heading, write_file};
-use super::source::{Kind, Lesson, Part, Shown, read, with_parts};
+use super::source::{Kind, Lesson, Part, Question, Shown, read, with_parts};
 use super::{CHAPTERS, CONTENTS, LESSONS, paragraph_of};
 use crate::failure::Failure;
 use crate::output::cannot_write;
@@ -74,11 +74,18 @@ pub(super) fn page(
                 let below = paragraph_of(&format!("{caption} (`{command}`)"), PAGE_WIDTH);
                 format!("![{alternative}]({file})\n\n{below}\n")
             }
-            Part::Question { question, answer } => format!(
-                "**{}**\n\n<details><summary>Answer</summary>\n\n{}\n\n</details>\n",
-                paragraph_of(question, PAGE_WIDTH - 4),
-                paragraph_of(answer, PAGE_WIDTH)
-            ),
+            Part::Question(Question {
+                text, asks, answer, ..
+            }) => {
+                let asks = asks.iter().map(|ask| format!("- {}: ____\n", ask.label));
+                let asks: String = asks.collect();
+                format!(
+                    "**{}**\n\n{asks}{}<details><summary>Answer</summary>\n\n{}\n\n</details>\n",
+                    paragraph_of(text, PAGE_WIDTH - 4),
+                    if asks.is_empty() { "" } else { "\n" },
+                    paragraph_of(answer, PAGE_WIDTH)
+                )
+            }
         };
     }
     Ok(page)

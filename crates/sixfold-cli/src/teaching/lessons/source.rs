@@ -11,6 +11,8 @@
 //! | `$+ ` | a command whose output is folded |
 //! | `$^ ` | a command that draws a picture; lines that begin with `^ ` describe the picture |
 //! | `? ` and `! ` | a question, and its answer |
+//! | `= ` | after a question: what a reader answers and the program checks ([`Ask`]) |
+//! | `~ ` | after a question: a hint |
 //! | `@ ` | the name of a part that several chapters share, and the options of its commands |
 //! | `## `, `- `, `1. `, `\|` | headings, lists and tables of Markdown, which are kept as they are |
 //!
@@ -37,10 +39,43 @@ pub(super) enum Part<'l> {
         command: &'l str,
         caption: String,
     },
-    Question {
-        question: String,
-        answer: String,
-    },
+    Question(Question<'l>),
+}
+
+/// A question, which a reader answers in own words, or by the values that are asked for.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Question<'l> {
+    pub(super) text: String,
+    pub(super) asks: Vec<Ask<'l>>,
+    pub(super) hint: String,
+    pub(super) answer: String,
+}
+
+/// One value that a question asks for: `= LABEL | ANSWER`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Ask<'l> {
+    pub(super) label: &'l str,
+    pub(super) expected: Expected<'l>,
+}
+
+/// Where the right value comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Expected<'l> {
+    /// `sixfold COMMAND # PATH`: what the JSON of a command has at a path.
+    Computed { line: &'l str, path: &'l str },
+    /// `one / * two / three`: a choice; the right one has a star.
+    Choice(&'l str),
+}
+
+impl<'l> Ask<'l> {
+    fn read(text: &'l str) -> Option<Self> {
+        let (label, answer) = text.split_once(" | ")?;
+        let expected = match answer.split_once(" # ") {
+            Some((line, path)) => Expected::Computed { line, path },
+            None => Expected::Choice(answer),
+        };
+        Some(Self { label, expected })
+    }
 }
 
 /// A command of a lesson.
@@ -100,9 +135,19 @@ pub(super) fn read(source: &str) -> Lesson<'_> {
     let mut parts = Vec::new();
     while let Some(line) = lines.next() {
         if let Some(question) = line.strip_prefix("? ") {
-            let question = joined(question, "? ", &mut lines);
+            let text = joined(question, "? ", &mut lines);
+            let mut asks = Vec::new();
+            while let Some(line) = lines.next_if(|line| line.starts_with("= ")) {
+                asks.extend(Ask::read(&line[2..]));
+            }
+            let hint = joined("", "~ ", &mut lines).trim().to_owned();
             let answer = joined("", "! ", &mut lines).trim().to_owned();
-            parts.push(Part::Question { question, answer });
+            parts.push(Part::Question(Question {
+                text,
+                asks,
+                hint,
+                answer,
+            }));
         } else if let Some(name) = line.strip_prefix("```file ") {
             let mut content = String::new();
             for line in lines.by_ref().take_while(|line| *line != "```") {
@@ -175,7 +220,7 @@ mod tests {
     #[test]
     fn the_parts_of_a_lesson_are_read_in_their_order() {
         let source = "# Title\n\nA text\nof two lines.\n\n```file m.obj\nv 0 0 0\n```\n$ sixfold a\n$! sixfold b\n\n\
-                      ? Why\n? so?\n! Thus\n! it is.\nMore.\n\n## Heading\n\n1. one\n   line\n2. two\n$+ sixfold c\n\
+                      ? Why\n? so?\n= a b | sixfold e # f.0\n= c | x / * y\n~ Look.\n! Thus\n! it is.\nMore.\n\n## Heading\n\n1. one\n   line\n2. two\n$+ sixfold c\n\
                       $^ sixfold d\n^ What\n^ it shows.\n```text\n$ kept\n```\n";
         let lesson = read(source);
         assert_eq!(lesson.title, "Title");
@@ -189,10 +234,24 @@ mod tests {
             },
             command("sixfold a", Kind::Output),
             command("sixfold b", Kind::Failure),
-            Part::Question {
-                question: "Why so?".into(),
+            Part::Question(Question {
+                text: "Why so?".into(),
+                asks: vec![
+                    Ask {
+                        label: "a b",
+                        expected: Expected::Computed {
+                            line: "sixfold e",
+                            path: "f.0",
+                        },
+                    },
+                    Ask {
+                        label: "c",
+                        expected: Expected::Choice("x / * y"),
+                    },
+                ],
+                hint: "Look.".into(),
                 answer: "Thus it is.".into(),
-            },
+            }),
             Part::Text("More.".into()),
             kept("## Heading"),
             kept("1. one\n   line\n2. two"),

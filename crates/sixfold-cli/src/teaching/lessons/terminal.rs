@@ -61,13 +61,23 @@ pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failur
                 text.print_line(&hanging_indent("Picture: ", caption));
                 text.print_line(&prompt(command, width()));
             }
-            Part::Question { question, answer } => {
-                text.print_line(&hanging_indent("? ", question));
-                if waits {
-                    waits = wait_for_answer()?;
+            Part::Question(question) => {
+                text.print_line(&hanging_indent("? ", &question.text));
+                if !waits {
+                } else if question.asks.is_empty() {
+                    waits = answer_to("Your answer, then Enter")?.is_some();
+                } else {
+                    for ask in &question.asks {
+                        let asked = folder.asked(ask)?;
+                        let Some(given) = answer_to(&asked.prompt())? else {
+                            waits = false;
+                            break;
+                        };
+                        text.print_line(&hanging_indent("  ", &asked.verdict(&given)));
+                    }
                 }
                 text.print_line("");
-                text.print_line(&hanging_indent("  ", answer));
+                text.print_line(&hanging_indent("  ", &question.answer));
             }
         }
         text.print_line("");
@@ -75,14 +85,14 @@ pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failur
     text.finish().map(|()| ExitCode::SUCCESS)
 }
 
-/// Waits for the answer of the reader. Returns false at the end of the input.
-fn wait_for_answer() -> Result<bool, Failure> {
-    print!("\nYour answer, then Enter: ");
+/// Waits for an answer of the reader. Returns `None` at the end of the input.
+fn answer_to(prompt: &str) -> Result<Option<String>, Failure> {
+    print!("\n{prompt}: ");
     let failed = |cause| cannot_write("the terminal", &cause);
     io::stdout().flush().map_err(failed)?;
     let mut answer = String::new();
     let read = io::stdin().lock().read_line(&mut answer).map_err(failed)?;
-    Ok(read > 0)
+    Ok((read > 0).then_some(answer))
 }
 
 /// Returns a block of Markdown for the terminal: without the marks of headings, drawings and links.
