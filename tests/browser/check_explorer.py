@@ -113,7 +113,7 @@ def compare_queries(page, mesh, queries, edits=()):
             check(shown["counts"] == [answer["reads"], answer["cache_lines"], answer["bytes"]], name, relation, shown, answer)
             check(shown["results"] == (", ".join(answer["results"]) or "none"), name, relation, shown["results"])
             lit, rows = set(shown["lit"]), rows_of(answer["steps"])
-            check(lit == rows if shown["isWhole"] else lit and lit <= rows, name, relation, shown["lit"])
+            check(lit == rows if shown["isWhole"] else lit and lit <= rows, name, relation, shown["lit"], sorted(rows - lit))
             check(set(first[name]["lit"]) <= rows_of(answer["steps"][:1]), name, relation, first[name]["lit"])
             check(len(first[name]["lit"]) == (answer["steps"][0]["step"] == "read"), name, relation, "rows after one step")
             check(first[name]["line"] == answer["steps"][0]["line"], name, relation, "the marked line")
@@ -130,10 +130,11 @@ def waiting(page):
 
 
 def edges(page):
-    """The names of the edges of the mesh in the page, from its tables."""
+    """The names of the edges of the mesh in the page, from its tables, in the order of their rows."""
     pairs = page.browser.run("""
         const rows = document.querySelectorAll('.card[data-structure=winged-edge] tr[data-row^=e]');
-        return [...rows].map(row => [...row.cells].slice(1, 3).map(cell => cell.lastChild.textContent.trim()));
+        const number = row => Number(row.dataset.row.slice(1));
+        return [...rows].sort((a, b) => number(a) - number(b)).map(row => [...row.cells].slice(1, 3).map(cell => cell.lastChild.textContent.trim()));
     """)
     return [sorted(pair, key=lambda name: int(name[1:])) for pair in pairs]
 
@@ -349,8 +350,8 @@ def check_remedies(page, path):
 
 VISIBLE = """
     return Object.fromEntries([...document.querySelectorAll('.card')].filter(card => !card.hidden).map(card => [card.dataset.structure,
-        Math.max(...[...card.querySelectorAll('.scroll')].map(table => {
-            const box = table.getBoundingClientRect(), head = table.querySelector('thead').getBoundingClientRect().bottom;
+        Math.max(...[...card.querySelectorAll('.tables table')].map(table => {
+            const box = card.querySelector('.tables').getBoundingClientRect(), head = table.querySelector('thead').getBoundingClientRect().bottom;
             return [...table.querySelectorAll('tbody tr')].map(row => row.getBoundingClientRect())
                 .filter(row => row.top >= head - 1 && row.bottom <= box.bottom + 1).length;
         }))]))
@@ -377,6 +378,45 @@ def check_shown(page, path):
     check(page.browser.run("return document.querySelector('.card.front').dataset.structure") == "corner-table", "in front")
     page.click("[data-tab=check]")
     check(page.browser.run("return document.getElementById('chosen').hidden"), "no choice without cards")
+
+
+# What a card has to scroll aside, and the tables in which the lit rows are not the first ones.
+ASIDE = """
+    return [...document.querySelectorAll('.card')].filter(card => !card.hidden && card.querySelector('.tables').scrollWidth
+        > card.querySelector('.tables').clientWidth).map(card => card.dataset.structure)
+"""
+NOT_FIRST = """
+    return [...document.querySelectorAll('.card:not([hidden]) tbody')].filter(body => {
+        const lit = [...body.rows].map(row => row.querySelector('.read, .read-now, .changed') !== null);
+        return lit.lastIndexOf(true) >= lit.filter(one => one).length;
+    }).map(body => body.closest('.card').dataset.structure)
+"""
+AT_HAND = """
+    return [...document.querySelectorAll('.card:not([hidden]) .read-now')].filter(cell => {
+        const row = cell.getBoundingClientRect(), box = cell.closest('.tables').getBoundingClientRect();
+        return row.top < box.top || row.bottom > box.bottom;
+    }).length
+"""
+
+
+def check_cards(page, path):
+    """The rows that are read or changed come first, the row at hand is visible, and no card scrolls aside."""
+    page.open(path)
+    for shown in (STRUCTURES, ("half-edge", "winged-edge")):
+        for name in STRUCTURES:
+            if name not in shown:
+                page.click(f"[data-shown={name}]")
+        page.click("#first")
+        for _ in range(12):
+            page.click("#next")
+            check(page.browser.run(NOT_FIRST) == [], "read rows first", page.browser.run(NOT_FIRST))
+            check(page.browser.run(AT_HAND) == 0, "the row at hand is hidden")
+        check(page.browser.run(ASIDE) == [], len(shown), "structures", page.browser.run(ASIDE))
+        page.click("#back")
+        check(page.browser.run(NOT_FIRST) == [], "one step back", page.browser.run(NOT_FIRST))
+    page.edit("flip_edge v0-v2")
+    check(page.browser.run(NOT_FIRST) == [], "changed rows first", page.browser.run(NOT_FIRST))
+    check(page.browser.run(ASIDE) == [], "after an edit", page.browser.run(ASIDE))
 
 
 def check_failure(page, path):
@@ -579,7 +619,7 @@ def main():
         try:
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+            for part in (check_queries, check_shown, check_cards, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
                          check_walks, check_measurements, check_levels, check_lessons):
                 part(page, path)
                 check_quiet(browser)
