@@ -419,6 +419,57 @@ def check_cards(page, path):
     check(page.browser.run(ASIDE) == [], "after an edit", page.browser.run(ASIDE))
 
 
+# The page's view of the mesh and its marks, for the checks.
+WATCH = """
+    const { mark, drawNow } = View.prototype;
+    View.prototype.mark = function (marks) { window.shownView = this; window.shownMarks = marks; return mark.call(this, marks); };
+    View.prototype.drawNow = function () { window.shownView = this; return drawNow.call(this); };
+    view_is_still = () => window.shownView && !window.shownView.turning;
+    is_seen = () => { const { at } = window.shownMarks.find((one) => one.isAtHand).place, view = window.shownView;
+        return view.model.isFree(at, view.turn.slice(6).map((part, axis) => view.centre[axis] + 4.2 * view.radius * part)); };
+    labels = () => window.shownMarks.filter((one) => one.style === 'thin').flatMap((one) => one.label.split(', ')).sort();
+"""
+
+
+def check_turns(page, path):
+    """The mesh turns to each element that it hides, also at once for those who want no motion, and not to one that it shows."""
+    for motion in ("no-preference", "reduce"):
+        page.browser.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": motion}])
+        page.open(path)
+        page.browser.run(WATCH)
+        page.type("#element", "v4")
+        turn = page.browser.run("return [...window.shownView.turn]")
+        turned = 0
+        for element in ("v0", "v1", "v2", "v3", "v4", "v5", "f0", "f7", "f2", "f5", "v0-v4", "v1-v5", "v2-v5", "v3-v4"):
+            page.type("#element", element)
+            if motion == "reduce":
+                check(page.browser.run("return view_is_still()"), element, "turns softly")
+            page.browser.wait("return view_is_still()")
+            check(page.browser.run("return is_seen()"), element, "is hidden")
+            turned += page.browser.run("return [...window.shownView.turn]") != turn
+            turn = page.browser.run("return [...window.shownView.turn]")
+        check(3 < turned < 13, turned, "turns")
+        page.type("#element", "v0")
+        page.browser.wait("return view_is_still()")
+        turn = page.browser.run("return [...window.shownView.turn]")
+        page.click("#next")
+        check(page.browser.run("return [...window.shownView.turn]") == turn, "turned to a place that is seen")
+    page.browser.devtools("Emulation.setEmulatedMedia", features=[])
+
+
+def check_arrows(page, path):
+    """The fields of the row at hand are arrows on the mesh."""
+    page.open(path)
+    page.browser.run(WATCH)
+    wings = ["left next", "left prev", "right next", "right prev"]
+    for structure, labels in (("half-edge", ["next", "prev", "twin"]), ("winged-edge", wings), ("corner-table", ["next", "opposite", "prev"]), ("polygon-soup", [])):
+        page.click(f".card[data-structure={structure}] h3 button")
+        page.click("#first")
+        for _ in range(2):
+            page.click("#next")
+        check(page.browser.run("return labels()") == labels, structure, page.browser.run("return labels()"))
+
+
 def check_failure(page, path):
     """The engine fails once: the page shows it, starts the engine again, and has lost nothing."""
     page.open(path)
@@ -619,7 +670,7 @@ def main():
         try:
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_cards, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
                          check_walks, check_measurements, check_levels, check_lessons):
                 part(page, path)
                 check_quiet(browser)

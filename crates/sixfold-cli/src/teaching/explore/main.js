@@ -179,10 +179,21 @@ class Page {
     const { explorer } = this;
     const style = getComputedStyle(document.documentElement);
     const rowsOf = (structure) => this.cards.get(structure)?.rows ?? new Rows();
-    this.view.mark(marks(explorer, rowsOf, (name) => style.getPropertyValue(name).trim()));
+    const list = marks(explorer, rowsOf, (name) => style.getPropertyValue(name).trim());
+    this.view.mark(list);
+    this.turnToMark(list.find((mark) => mark.isAtHand));
     const refusals = explorer.lastEdit?.refusals ?? new Map();
     find("say").hidden = refusals.size === 0;
     find("say").textContent = refusalText(refusals, explorer.isRefused);
+  }
+
+  // Turns the mesh to the element at hand if it is another one than before. Fast steps do not turn it.
+  turnToMark(mark) {
+    const key = mark && `${mark.label} ${this.explorer.view.time}`;
+    if (key === this.atHand) return;
+    this.atHand = key;
+    const isFast = this.player.isPlaying && Number(find("speed").value) > 5;
+    if (mark && !isFast) this.view.turnTo(mark.place);
   }
 
   listen() {

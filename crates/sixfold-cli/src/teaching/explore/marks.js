@@ -28,7 +28,7 @@ export function marks(explorer, rowsOf, colour) {
   for (const name of picked) add(name, colour("--picked"));
   if (view.tab !== "check") {
     const place = model.place(view.element);
-    if (place) list.push({ place, colour: colour("--chosen"), label: view.element, style: place.kind === "vertex" ? "ring" : styleOf(place) });
+    if (place) list.push({ place, colour: colour("--chosen"), label: view.element, style: place.kind === "vertex" ? "ring" : styleOf(place), isAtHand: !list.some((one) => one.isAtHand) });
   }
   return list;
 }
@@ -59,8 +59,29 @@ function stepMarks({ view, model, timelines }, rows, colour) {
     const points = [from.at, mix(from.at, place.at, 0.9)];
     list.push({ place: { kind: "move", points, at: place.at }, colour: own, style: "arrow" });
   }
-  list.push({ place, colour: own, label: rows.nameOf(read.row), style: styleOf(place) });
+  list.push(...fieldMarks(model, rows, read.row, place, own));
+  list.push({ place, colour: own, label: rows.nameOf(read.row), style: styleOf(place), isAtHand: true });
   return list;
+}
+
+// Thin arrows for the fields of a row that name other rows, such as its next and its twin: a side as an arrow along it,
+// an edge or a corner as an arrow to it.
+function fieldMarks(model, rows, name, own, colour) {
+  const found = new Map();
+  for (const [field, value] of Object.entries(rows.get(name)?.values ?? {})) {
+    if (value === name || !rows.has(value)) continue;
+    const place = placeOfRow(model, rows, value);
+    if (!place || !["side", "edge", "corner"].includes(place.kind)) continue;
+    if (found.has(value)) found.get(value).label += `, ${field}`;
+    else found.set(value, { place: place.kind === "side" ? place : towards(own, place), colour, label: field, style: "thin" });
+  }
+  return [...found.values()];
+}
+
+// An arrow from one place to another one, with its label near its head.
+function towards(from, to) {
+  const points = [mix(from.at, to.at, 0.12), mix(from.at, to.at, 0.92)];
+  return { kind: "move", points, at: mix(from.at, to.at, 0.7) };
 }
 
 // The chosen point of a level, and arrows from its parents with their weights.

@@ -82,6 +82,31 @@ export class Model {
     return { kind: "face", points, at: average(points) };
   }
 
+  // Whether no face is between a point of the mesh and an eye. The faces at the point are not between.
+  isFree(point, eye) {
+    const way = minus(eye, point);
+    const { triangles, vertices } = this;
+    for (let i = 0; i < triangles.length; i += 4) {
+      const a = vertices[triangles[i]];
+      const hit = meeting(point, way, a, minus(vertices[triangles[i + 1]], a), minus(vertices[triangles[i + 2]], a));
+      if (hit && hit.t > 2e-3 && hit.t < 1) return false;
+    }
+    return true;
+  }
+
+  // The sum of the unit normals of the triangles at a point of the mesh.
+  normalAt(point) {
+    const { triangles, vertices } = this;
+    let sum = [0, 0, 0];
+    for (let i = 0; i < triangles.length; i += 4) {
+      const [a, b, c] = [vertices[triangles[i]], vertices[triangles[i + 1]], vertices[triangles[i + 2]]];
+      const normal = unit(cross(minus(b, a), minus(c, a)));
+      const hit = meeting(point, normal, a, minus(b, a), minus(c, a));
+      if (hit && Math.abs(hit.t) < 1e-3 * this.radius) sum = plus(sum, normal);
+    }
+    return sum;
+  }
+
   // The corner of a face at a vertex, moved a little into the face.
   corner(face, vertex) {
     const at = this.vertices[vertex];
@@ -147,6 +172,20 @@ function cut(points) {
   return [...triangles, rest];
 }
 
+// Where a line meets the triangle at `a` with two sides: { t } along the line, or null (Möller and Trumbore, 1997).
+// The border of the triangle belongs to it.
+function meeting(point, way, a, ab, ac) {
+  const across = cross(way, ac);
+  const volume = dot(ab, across);
+  if (Math.abs(volume) < 1e-12) return null;
+  const from = minus(point, a);
+  const u = dot(from, across) / volume;
+  const aside = cross(from, ab);
+  const v = dot(way, aside) / volume;
+  if (u < -1e-6 || v < -1e-6 || u + v > 1 + 1e-6) return null;
+  return { t: dot(ac, aside) / volume };
+}
+
 // The vector of a polygon's area (Newell): normal to it.
 export function areaOf(points) {
   let sum = [0, 0, 0];
@@ -161,6 +200,7 @@ export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const unit = (a) => scale(a, 1 / (Math.hypot(...a) || 1));
 export const length = (a) => Math.hypot(...a);
 export const mix = (a, b, t) => [0, 1, 2].map((axis) => a[axis] * (1 - t) + b[axis] * t);
 export const average = (points) => scale(points.reduce(plus, [0, 0, 0]), 1 / points.length);
