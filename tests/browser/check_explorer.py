@@ -470,6 +470,103 @@ def check_arrows(page, path):
         check(page.browser.run("return labels()") == labels, structure, page.browser.run("return labels()"))
 
 
+CHANGED_ROWS = """
+    const card = document.querySelector(`.card[data-structure=${arguments[0]}]`);
+    return [...card.querySelectorAll('tr[data-row]')].filter(row => row.querySelector('.changed')).map(row => row.dataset.row)
+"""
+
+
+def check_edit_steps(page, path):
+    """An edit plays through its writes: the tables and the mesh of before, row by row, to those of after, and back."""
+    stored = """
+        const card = document.querySelector(`.card[data-structure=${arguments[0]}]`);
+        return [...card.querySelectorAll('tr[data-row]')].map(row => [row.dataset.row, [...row.querySelectorAll('td:not(.derived)')].map(cell => cell.textContent).join()]).sort()
+    """
+    tables = """return document.getElementById('cards').innerHTML.replaceAll(' class=""', '')"""
+    for edit in ("flip_edge v0-v2", "split_edge v0-v2", "set_position v0 1,2,3", "remove_vertex v0"):
+        page.open(path)
+        before = {name: dict(page.browser.run(stored, name)) for name in STRUCTURES}
+        page.edit(edit)
+        native = page.native(mesh={"shape": {"name": "octahedron"}}, ask={"edit": edit})
+        for answer in native["answers"]:
+            name = answer["backend"]
+            if answer["refusal"]:
+                continue
+            page.click(f".card[data-structure={name}] h3 button")
+            writes = [row for row in answer["rows"] if row["written"]]
+            check(page.text("#clock") == f"step {len(writes)} of {len(writes)}", name, edit, page.text("#clock"))
+            end = page.browser.run(tables)
+            page.click("#first")
+            if edit.startswith(("flip", "set")) and name != "face-vertex":
+                # Each row stays, with the same columns.
+                check(dict(page.browser.run(stored, name)) == before[name], name, edit, "the tables before")
+            check(page.browser.run(CHANGED_ROWS, name) == [], name, edit, "nothing is written yet")
+            for number in range(1, len(writes) + 1):
+                page.click("#next")
+                begun = {row["table"] for row in writes[:number]}
+                done = writes[:number] + [row for row in answer["rows"] if not row["written"] and (row["table"] in begun or number == len(writes))]
+                expected = {row["row"] for row in done if row["before"] != row["after"]}
+                check(set(page.browser.run(CHANGED_ROWS, name)) == expected, name, edit, number, page.browser.run(CHANGED_ROWS, name))
+                check(writes[number - 1]["row"] in page.text(f".card[data-structure={name}] .now"), name, edit, number, writes[number-1], page.text(f".card[data-structure={name}] .now"))
+            check(page.browser.run(tables) == end, name, edit, "the end is not as before")
+            page.click("#back")
+            page.click("#next")
+            check(page.browser.run(tables) == end, name, edit, "the end is not as before")
+    # The mesh is the one of before until the last write; so is that of a link.
+    page.open(path)
+    page.browser.run(WATCH)
+    page.edit("poke_face f0")
+    faces = "return window.shownView.model.faceCount"
+    check(page.browser.run(faces) == 10, "the mesh after the edit")
+    page.click("#back")
+    check(page.browser.run(faces) == 8, "the mesh before the edit")
+    page.click("#share-button")
+    link = page.browser.run("return document.getElementById('link').value")
+    page.open(path, link[link.index("#"):])
+    page.browser.run(WATCH)
+    page.click("#first")
+    check(page.browser.run(faces) == 8, "the mesh before the edit of a link")
+    page.click("#last")
+    check(page.browser.run(faces) == 10, "the mesh after the edit of a link")
+
+
+def check_primary(page, path):
+    """One button is the primary one: the one that is pressed next."""
+    shown = """
+        return [...document.querySelectorAll('button.main')].filter(one => one.checkVisibility() && !one.closest('#lesson'))
+            .map(one => one.id || one.dataset.edit || one.dataset.repair)
+    """
+    def expect(*names):
+        check(page.browser.run(shown) == list(names), names, page.browser.run(shown))
+    page.open(path)
+    expect("next")
+    page.click("#next")
+    expect("next")
+    page.click("#last")
+    expect()
+    page.click("[data-tab=edit]")
+    expect("remove_vertex v0")
+    page.edit("flip_edge v0-v2")
+    expect("play")
+    page.click("#first")
+    expect("next")
+    page.click("[data-tab=walk]")
+    expect()
+    write = "const field = document.getElementById('walk-text'); field.value = 'yield v1'; field.dispatchEvent(new Event('input', { bubbles: true }))"
+    page.browser.run(write)
+    expect("run-walk")
+    page.click("#run-walk")
+    expect("next")
+    page.click("[data-tab=measure]")
+    expect("measure")
+    page.click("[data-tab=edit]")
+    page.type("#element", "v0-v3")
+    page.click("button.fault")
+    expect("winged-edge")
+    page.click("[data-repair=half-edge]")
+    expect("take-repair")
+
+
 def check_failure(page, path):
     """The engine fails once: the page shows it, starts the engine again, and has lost nothing."""
     page.open(path)
@@ -585,8 +682,13 @@ def check_levels(page, path):
     native = page.native(mesh={"shape": {"name": "octahedron"}}, ask={"stencil": {"scheme": "loop", "level": 1, "point": 8}})
     shown = page.browser.run("return [...document.querySelectorAll('#stencil tr')].map(row => [...row.cells].map(cell => cell.textContent))")
     value = lambda text: int(text.split("/")[0]) / int((text + "/1").split("/")[1]) if "." not in text else float(text)
-    expected = [[parent["vertex"], parent["weight"]] for parent in native["parents"]]
+    # The parents are points of the level before.
+    expected = [[parent["vertex"] + "⁰", parent["weight"]] for parent in native["parents"]]
     check([[name, value(weight)] for name, weight in shown] == expected, shown, expected)
+    check(page.text("#stencil caption").startswith("v8¹ = "), page.text("#stencil caption"))
+    levels = "return [...document.querySelectorAll('#levels tr')].slice(1).map(row => [...row.cells].map(cell => cell.textContent))"
+    # Each vertex of an octahedron has valence 4, each new point of Loop's scheme valence 6.
+    check(page.browser.run(levels) == [["0", "6", "12", "8", "2", "64"], ["1", "18", "48", "32", "2", "64126"]], page.browser.run(levels))
     # A sharp edge stays with its mesh, and goes with an edit that deletes it.
     page.open(path)
     page.type("#element", "v0-v2")
@@ -604,6 +706,37 @@ def check_levels(page, path):
     page.click("[data-tab=subdivide]")
     page.type("#scheme", "doo-sabin")
     check(page.text("#mesh-size") == "24 vertices, 48 edges, 26 faces", page.text("#mesh-size"))
+
+
+def check_regularity(page, path):
+    """Irregular vertices and boundary loops can be seen."""
+    def irregular():
+        page.browser.run("document.querySelector('#names [value=valence]').checked || document.querySelector('#names [value=valence]').click()")
+        return page.browser.run("return window.shownView.valenceMarks().length")
+
+    def open_shape(shape, **parameters):
+        state = {"sixfold": 1, "subject": {"mesh": {"shape": {"name": shape, "parameters": parameters}}}, "name": shape, "edits": []}
+        drop(page, "state.json", json.dumps(state).encode())
+
+    page.open(path)
+    page.browser.run(WATCH)
+    expected = {"octahedron": 6, "triangle-torus": 0, "torus": 0, "grid": 4, "cube": 8, "icosahedron": 12, "dodecahedron": 0}
+    for shape, number in expected.items():
+        open_shape(shape, **({"m": 6, "n": 6} if shape in ("grid", "torus", "triangle-torus") else {}))
+        check(irregular() == number, shape, irregular())
+    loops = "return [...document.querySelectorAll('[data-loop]')].map(one => one.textContent)"
+    for shape, parameters, lengths in (("grid-with-hole", {"m": 3, "n": 3}, [12, 4]), ("moebius", {"n": 6}, None), ("octahedron", {}, [])):
+        open_shape(shape, **parameters)
+        page.click("[data-tab=check]")
+        shown = page.browser.run(loops)
+        if lengths is None:
+            check(len(shown) == 1, shape, shown)
+        else:
+            check(sorted(shown) == sorted(f"{length} edges" for length in lengths), shape, shown)
+    open_shape("grid-with-hole", m=3, n=3)
+    page.click("[data-tab=check]")
+    page.click("[data-loop]")
+    check(page.browser.run("return window.shownMarks.length") in (4, 12), "the marks of a loop")
 
 
 def check_lessons(page, path):
@@ -670,8 +803,8 @@ def main():
         try:
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
-                         check_walks, check_measurements, check_levels, check_lessons):
+            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+                         check_walks, check_measurements, check_levels, check_regularity, check_lessons):
                 part(page, path)
                 check_quiet(browser)
             check_sizes(page, path, folder)

@@ -1,6 +1,7 @@
 // The cards: one for each structure, with the steps of its query, and its tables.
 
 import { el, button, count } from "./dom.js";
+import { writeSentence } from "./edit-steps.js";
 import { rowNumber } from "./timeline.js";
 
 // Maximum number of results that a card lists: the last ones.
@@ -14,6 +15,7 @@ const PARTED = { opposite: "oppo\u00adsite", triangle: "tri\u00adangle" };
 export class Rows extends Map {
   constructor(moved = []) {
     super();
+    this.moved = moved;
     const elements = new Map(moved);
     // The name of the element in a row of vertices or faces.
     this.elementOf = (row) => elements.get(row) ?? row;
@@ -117,21 +119,30 @@ export class Card {
 
   // Marks what the last edit changed, with the values before.
   markChanges() {
-    for (const [key, change] of this.changes) {
-      const cells = this.cells.get(key);
-      if (!cells) continue;
-      const kind = !change.before ? "made" : !change.after ? "removed" : null;
-      if (kind) {
-        for (const cell of cells) cell.classList.add("changed", kind);
-        if (kind === "removed") cells[0].textContent = `deleted, was ${change.before.join(", ")}`;
-        continue;
-      }
-      change.after.forEach((value, i) => {
-        if (!cells[i] || value === change.before[i]) return;
-        cells[i].classList.add("changed");
-        cells[i].replaceChildren(el("s", {}, change.before[i]), " ", value);
-      });
-    }
+    this.shownAs = new Map();
+    this.deletedIn = new Map();
+    const last = [...this.changes].reverse().sort(([, a], [, b]) => Number(a.written) - Number(b.written));
+    for (const [key, { before }] of last) if (before) this.deletedIn.set(this.cells.get(key)?.[0], key);
+    for (const [key, change] of this.changes) this.showChange(key, change, true);
+  }
+
+  // Shows a row before an edit, or after it with what it changed.
+  showChange(key, { before, after }, isAfter) {
+    const cells = this.cells.get(key);
+    if (!cells || this.shownAs.get(key) === isAfter) return;
+    this.shownAs.set(key, isAfter);
+    const kind = !before ? "made" : !after ? "removed" : null;
+    cells.forEach((cell, i) => {
+      // The one cell of a deleted row stands for all its tables: it has the values of the first that is written.
+      if (cell.classList.contains("deleted") && (!before || this.deletedIn.get(cell) !== key)) return;
+      const [old, now] = [before?.[i], after?.[i]].map((value) => (value === undefined ? value : shortened(value)));
+      cell.classList.toggle("changed", isAfter && (kind !== null || old !== now));
+      if (kind) cell.classList.toggle(kind, isAfter);
+      if (!isAfter) cell.textContent = !before ? "–" : after ? old : before.join(", ");
+      else if (kind === "removed") cell.textContent = `deleted, was ${before.join(", ")}`;
+      else if (kind === "made" || old === now) cell.textContent = now ?? "";
+      else cell.replaceChildren(el("s", {}, old), " ", now);
+    });
   }
 
   // Puts the rows of some keys before the others of their tables, in the order of the keys. The others keep theirs.
@@ -152,13 +163,16 @@ export class Card {
     if (focused !== document.activeElement) focused?.focus({ preventScroll: true });
   }
 
-  // Shows the steps of a query or walk; without one, none.
-  follow(timeline) {
+  // Shows the steps of a query or walk, or the writes of an edit; without one, none.
+  follow(timeline, steps) {
     this.timeline = timeline;
+    this.steps = steps;
+    this.now.replaceChildren();
     const lines = timeline ? timeline.answer.algorithm : [];
     this.code.replaceChildren(...lines.map((line) => el("li", { title: line }, line)));
     this.code.hidden = lines.length === 0;
-    this.now.hidden = this.results.hidden = !timeline;
+    this.now.hidden = !timeline && !steps?.length;
+    this.results.hidden = !timeline;
     this.first = new Map();
     for (const key of timeline ? this.cells.keys() : []) {
       const [table, row] = key.split(/ (?=\S+$)/);
@@ -173,8 +187,9 @@ export class Card {
     for (const cells of this.cells.values()) for (const cell of cells) cell.classList.remove("read-now", "read");
   }
 
-  // Shows one time.
-  at(time) {
+  // Shows one time; `isEnd` if it is the end for the structure in front.
+  at(time, isEnd) {
+    if (this.steps) this.atWrite(isEnd ? this.steps.length : time, isEnd);
     if (!this.timeline) return;
     const found = this.timeline.at(time);
     const read = this.timeline.readAt(time);
@@ -201,11 +216,24 @@ export class Card {
     this.current = key;
   }
 
+  // Shows the rows of an edit at one time. The row at hand is lit until the end.
+  atWrite(time, isEnd) {
+    for (const [key, change] of this.changes) this.showChange(key, change, this.steps.isWritten(key, time));
+    const write = this.steps.at(time);
+    const key = write && !isEnd ? `${write.table} ${write.row}` : null;
+    if (this.current !== key) {
+      for (const cell of this.cells.get(this.current) ?? []) cell.classList.remove("read-now");
+      for (const cell of this.cells.get(key) ?? []) cell.classList.add("read-now");
+    }
+    this.current = key;
+    this.now.replaceChildren(...writeSentence(write));
+  }
+
   // Scrolls the tables to the row of the last step: after all cards have changed, so that the page is laid out once.
   reveal() {
-    if (!this.timeline) return;
+    if (!this.timeline && !this.steps) return;
     this.scrollTo(this.current);
-    this.showLine();
+    if (this.timeline) this.showLine();
   }
 
   // Scrolls the tables so that a row can be seen. Only the tables move, not the page.

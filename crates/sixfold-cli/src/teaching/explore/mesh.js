@@ -1,5 +1,8 @@
 // The mesh as the page draws it: positions, faces and edges by the numbers of their names.
 
+// The valences of regular vertices inside and at a boundary, by the corners of the faces.
+const REGULAR = { 3: [6, 4], 4: [4, 3] };
+
 // A mesh with its edges, its bounds and the triangles that cover its faces. `geometry` is that of the engine:
 // an element that was deleted is null.
 export class Model {
@@ -23,6 +26,51 @@ export class Model {
     });
     this.measure();
     this.cover();
+  }
+
+  // For each vertex its edges, and whether it is at a boundary: { valence, isBoundary, isIrregular }; null without a vertex.
+  // A vertex is regular if it is one of a plane that is tiled by the polygons of the mesh. Without such a tiling, none is
+  // irregular. Computed once.
+  get valences() {
+    if (this.counted) return this.counted;
+    this.counted = this.vertices.map((vertex) => vertex && { valence: 0, isBoundary: false });
+    for (const { ends, faces } of this.edges.values()) {
+      for (const v of ends) {
+        this.counted[v].valence += 1;
+        if (faces.length === 1) this.counted[v].isBoundary = true;
+      }
+    }
+    const degrees = new Set(this.faces.filter((face) => face).map((face) => face.length));
+    const [inside, atBoundary] = (degrees.size === 1 && REGULAR[[...degrees][0]]) || [];
+    for (const one of this.counted) {
+      const regular = one?.isBoundary ? atBoundary : inside;
+      if (one) one.isIrregular = regular !== undefined && one.valence > 0 && one.valence !== regular;
+    }
+    return this.counted;
+  }
+
+  // The closed chains of edges with one face, as lists of names. At a vertex where chains touch, one of them goes on.
+  // Faces need not agree on a side.
+  boundaryLoops() {
+    const at = new Map();
+    const add = (v, edge) => at.set(v, [...at.get(v) ?? [], edge]);
+    for (const edge of this.edges.values()) if (edge.faces.length === 1) for (const v of edge.ends) add(v, edge);
+    const used = new Set();
+    const next = (v) => at.get(v).find((edge) => !used.has(edge));
+    const loops = [];
+    for (const start of at.keys()) {
+      while (next(start)) {
+        const loop = [];
+        for (let v = start, edge = next(v); edge; edge = next(v)) {
+          used.add(edge);
+          loop.push(edge.name);
+          v = edge.ends[0] === v ? edge.ends[1] : edge.ends[0];
+          if (v === start) break;
+        }
+        loops.push(loop);
+      }
+    }
+    return loops;
   }
 
   // The centre and the radius of the mesh.

@@ -15,7 +15,7 @@ const LESSONS: &str = include_str!("lessons.json");
 const ENGINE: &[u8] = include_bytes!("engine.wasm.gz");
 
 /// The scripts, each after those that it imports from.
-const SCRIPTS: [&str; 24] = [
+const SCRIPTS: [&str; 25] = [
     include_str!("dom.js"),
     include_str!("engine.js"),
     include_str!("mesh.js"),
@@ -23,6 +23,7 @@ const SCRIPTS: [&str; 24] = [
     include_str!("view.js"),
     include_str!("state.js"),
     include_str!("timeline.js"),
+    include_str!("edit-steps.js"),
     include_str!("cards.js"),
     include_str!("places.js"),
     include_str!("subdivide.js"),

@@ -7,6 +7,8 @@ import { Raster, pixel } from "./raster.js";
 const MOST_LINES = 60000;
 // Meshes with more elements show the names of chosen and read elements only.
 const MOST_NAMES = 90;
+// Maximum number of irregular vertices that are marked.
+const MOST_DOTS = 1000;
 // Distance of the eye from the centre, in radii of the mesh.
 const EYE = 4.2;
 // The time of a turn to an element, and the angle from its normal at which it is seen then.
@@ -20,7 +22,7 @@ export class View {
     this.overlay = overlay;
     this.onChoose = onChoose;
     this.raster = new Raster();
-    this.names = { vertex: true, edge: false, face: true };
+    this.names = { vertex: true, edge: false, face: true, valence: false };
     this.marks = [];
     this.reset();
     this.listen();
@@ -34,8 +36,10 @@ export class View {
     this.shift = [0, 0];
   }
 
-  // Shows a mesh. The view stays as it is if the mesh is at about the same place.
-  show(model) {
+  // Shows a mesh, with a mark after the names of its elements. The view stays as it is if the mesh is at about the same
+  // place.
+  show(model, suffix = "") {
+    this.suffix = suffix;
     const before = this.model;
     this.model = model;
     const moved = before && length(minus(before.centre, model.centre)) > 0.6 * model.radius;
@@ -174,7 +178,7 @@ export class View {
     pen.clearRect(0, 0, width, height);
     pen.lineCap = pen.lineJoin = "round";
     const labels = [];
-    for (const mark of this.marks) {
+    for (const mark of [...this.valenceMarks(), ...this.marks]) {
       if (!mark.place) continue;
       this.drawMark(pen, mark);
       if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: true, ...(mark.style === "thin" && thinLabel(mark.place)) });
@@ -218,14 +222,34 @@ export class View {
     pen.setLineDash([]);
   }
 
+  // The name of a vertex, its valence, or both.
+  vertexLabel(v) {
+    const name = `v${v}${this.suffix}`;
+    if (!this.names.valence) return name;
+    const { valence } = this.model.valences[v];
+    return this.names.vertex ? `${name}: ${valence}` : String(valence);
+  }
+
+  // Dots for irregular vertices, with their valences in a mesh that is too large for all names.
+  valenceMarks() {
+    const { model, names } = this;
+    if (!names.valence) return [];
+    const colour = getComputedStyle(document.documentElement).getPropertyValue("--irregular").trim();
+    const irregular = [...model.vertices.keys()].filter((v) => model.valences[v]?.isIrregular).slice(0, MOST_DOTS);
+    const isNamed = model.vertexCount > MOST_NAMES && irregular.length <= MOST_NAMES;
+    return irregular.map((v) => ({
+      place: model.place(`v${v}`), colour, style: "dot", label: isNamed ? this.vertexLabel(v) : null,
+    }));
+  }
+
   // The names of the elements that are seen.
   ownNames() {
     const { model, names } = this;
     const kinds = { vertex: model.vertexCount, edge: model.edges.size, face: model.faceCount };
     const labels = [];
-    const add = (text, at) => labels.push({ text, at });
-    if (names.vertex && kinds.vertex <= MOST_NAMES) {
-      model.vertices.forEach((vertex, v) => vertex && add(`v${v}`, vertex));
+    const add = (text, at) => labels.push({ text: text + this.suffix, at });
+    if ((names.vertex || names.valence) && kinds.vertex <= MOST_NAMES) {
+      model.vertices.forEach((vertex, v) => vertex && labels.push({ text: this.vertexLabel(v), key: v, at: vertex }));
     }
     if (names.edge && kinds.edge <= MOST_NAMES) {
       for (const { name, ends } of model.edges.values()) {
@@ -244,9 +268,9 @@ export class View {
     const [ink, paper] = ["--ink", "--paper"].map((name) => style.getPropertyValue(name).trim());
     const drawn = [];
     const texts = new Set();
-    for (const { text, at, isStrong, isThin, others = [] } of labels) {
+    for (const { text, key = text, at, isStrong, isThin, others = [] } of labels) {
       const point = this.project(at);
-      if (texts.has(text) || (!isStrong && !this.isSeen(point))) continue;
+      if (texts.has(key) || (!isStrong && !this.isSeen(point))) continue;
       pen.font = `${isThin ? "italic 13px" : isStrong ? "bold 15px" : "13px"} system-ui, sans-serif`;
       const wide = pen.measureText(text).width + 6;
       const corner = ([left, top]) => [left - wide / 2, top - (isThin || text.startsWith("f") ? 9 : 24)];
@@ -256,7 +280,7 @@ export class View {
       if (!found) continue;
       const [x, y] = found;
       drawn.push([x, y, x + wide, y + 18]);
-      texts.add(text);
+      texts.add(key);
       pen.globalAlpha = isStrong ? 0.95 : 0.75;
       pen.fillStyle = paper;
       pen.beginPath();
