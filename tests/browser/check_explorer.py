@@ -119,7 +119,7 @@ def compare_queries(page, mesh, queries, edits=()):
             check(shown["counts"] == [answer["reads"], answer["cache_lines"], answer["bytes"]], name, relation, shown, answer)
             check(shown["results"] == (", ".join(answer["results"]) or "none"), name, relation, shown["results"])
             lit, rows = set(shown["lit"]), rows_of(answer["steps"])
-            check(lit == rows if shown["isWhole"] else lit and lit <= rows, name, relation, shown["lit"])
+            check(lit == rows if shown["isWhole"] else lit and lit <= rows, name, relation, shown["lit"], sorted(rows - lit))
             check(set(first[name]["lit"]) <= rows_of(answer["steps"][:1]), name, relation, first[name]["lit"])
             check(len(first[name]["lit"]) == (answer["steps"][0]["step"] == "read"), name, relation, "rows after one step")
             check(first[name]["line"] == answer["steps"][0]["line"], name, relation, "the marked line")
@@ -136,10 +136,11 @@ def waiting(page):
 
 
 def edges(page):
-    """The names of the edges of the mesh in the page, from its tables."""
+    """The names of the edges of the mesh in the page, from its tables, in the order of their rows."""
     pairs = page.browser.run("""
         const rows = document.querySelectorAll('.card[data-structure=winged-edge] tr[data-row^=e]');
-        return [...rows].map(row => [...row.cells].slice(1, 3).map(cell => cell.lastChild.textContent.trim()));
+        const number = row => Number(row.dataset.row.slice(1));
+        return [...rows].sort((a, b) => number(a) - number(b)).map(row => [...row.cells].slice(1, 3).map(cell => cell.lastChild.textContent.trim()));
     """)
     return [sorted(pair, key=lambda name: int(name[1:])) for pair in pairs]
 
@@ -355,8 +356,8 @@ def check_remedies(page, path):
 
 VISIBLE = """
     return Object.fromEntries([...document.querySelectorAll('.card')].filter(card => !card.hidden).map(card => [card.dataset.structure,
-        Math.max(...[...card.querySelectorAll('.scroll')].map(table => {
-            const box = table.getBoundingClientRect(), head = table.querySelector('thead').getBoundingClientRect().bottom;
+        Math.max(...[...card.querySelectorAll('.tables table')].map(table => {
+            const box = card.querySelector('.tables').getBoundingClientRect(), head = table.querySelector('thead').getBoundingClientRect().bottom;
             return [...table.querySelectorAll('tbody tr')].map(row => row.getBoundingClientRect())
                 .filter(row => row.top >= head - 1 && row.bottom <= box.bottom + 1).length;
         }))]))
@@ -383,6 +384,193 @@ def check_shown(page, path):
     check(page.browser.run("return document.querySelector('.card.front').dataset.structure") == "corner-table", "in front")
     page.click("[data-tab=check]")
     check(page.browser.run("return document.getElementById('chosen').hidden"), "no choice without cards")
+
+
+# What a card has to scroll aside, and the tables in which the lit rows are not the first ones.
+ASIDE = """
+    return [...document.querySelectorAll('.card')].filter(card => !card.hidden && card.querySelector('.tables').scrollWidth
+        > card.querySelector('.tables').clientWidth).map(card => card.dataset.structure)
+"""
+NOT_FIRST = """
+    return [...document.querySelectorAll('.card:not([hidden]) tbody')].filter(body => {
+        const lit = [...body.rows].map(row => row.querySelector('.read, .read-now, .changed') !== null);
+        return lit.lastIndexOf(true) >= lit.filter(one => one).length;
+    }).map(body => body.closest('.card').dataset.structure)
+"""
+AT_HAND = """
+    return [...document.querySelectorAll('.card:not([hidden]) .read-now')].filter(cell => {
+        const row = cell.getBoundingClientRect(), box = cell.closest('.tables').getBoundingClientRect();
+        return row.top < box.top || row.bottom > box.bottom;
+    }).length
+"""
+
+
+def check_cards(page, path):
+    """The rows that are read or changed come first, the row at hand is visible, and no card scrolls aside."""
+    page.open(path)
+    for shown in (STRUCTURES, ("half-edge", "winged-edge")):
+        for name in STRUCTURES:
+            if name not in shown:
+                page.click(f"[data-shown={name}]")
+        page.click("#first")
+        for _ in range(12):
+            page.click("#next")
+            check(page.browser.run(NOT_FIRST) == [], "read rows first", page.browser.run(NOT_FIRST))
+            check(page.browser.run(AT_HAND) == 0, "the row at hand is hidden")
+        check(page.browser.run(ASIDE) == [], len(shown), "structures", page.browser.run(ASIDE))
+        page.click("#back")
+        check(page.browser.run(NOT_FIRST) == [], "one step back", page.browser.run(NOT_FIRST))
+    page.edit("flip_edge v0-v2")
+    check(page.browser.run(NOT_FIRST) == [], "changed rows first", page.browser.run(NOT_FIRST))
+    check(page.browser.run(ASIDE) == [], "after an edit", page.browser.run(ASIDE))
+
+
+# The page's view of the mesh and its marks, for the checks.
+WATCH = """
+    const { mark, drawNow } = View.prototype;
+    View.prototype.mark = function (marks) { window.shownView = this; window.shownMarks = marks; return mark.call(this, marks); };
+    View.prototype.drawNow = function () { window.shownView = this; return drawNow.call(this); };
+    view_is_still = () => window.shownView && !window.shownView.turning;
+    is_seen = () => { const { at } = window.shownMarks.find((one) => one.isAtHand).place, view = window.shownView;
+        return view.model.isFree(at, view.turn.slice(6).map((part, axis) => view.centre[axis] + 4.2 * view.radius * part)); };
+    labels = () => window.shownMarks.filter((one) => one.style === 'thin').flatMap((one) => one.label.split(', ')).sort();
+"""
+
+
+def check_turns(page, path):
+    """The mesh turns to each element that it hides, also at once for those who want no motion, and not to one that it shows."""
+    for motion in ("no-preference", "reduce"):
+        page.browser.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": motion}])
+        page.open(path)
+        page.browser.run(WATCH)
+        page.type("#element", "v4")
+        turn = page.browser.run("return [...window.shownView.turn]")
+        turned = 0
+        for element in ("v0", "v1", "v2", "v3", "v4", "v5", "f0", "f7", "f2", "f5", "v0-v4", "v1-v5", "v2-v5", "v3-v4"):
+            page.type("#element", element)
+            if motion == "reduce":
+                check(page.browser.run("return view_is_still()"), element, "turns softly")
+            page.browser.wait("return view_is_still()")
+            check(page.browser.run("return is_seen()"), element, "is hidden")
+            turned += page.browser.run("return [...window.shownView.turn]") != turn
+            turn = page.browser.run("return [...window.shownView.turn]")
+        check(3 < turned < 13, turned, "turns")
+        page.type("#element", "v0")
+        page.browser.wait("return view_is_still()")
+        turn = page.browser.run("return [...window.shownView.turn]")
+        page.click("#next")
+        check(page.browser.run("return [...window.shownView.turn]") == turn, "turned to a place that is seen")
+    page.browser.devtools("Emulation.setEmulatedMedia", features=[])
+
+
+def check_arrows(page, path):
+    """The fields of the row at hand are arrows on the mesh."""
+    page.open(path)
+    page.browser.run(WATCH)
+    wings = ["left next", "left prev", "right next", "right prev"]
+    for structure, labels in (("half-edge", ["next", "prev", "twin"]), ("winged-edge", wings), ("corner-table", ["next", "opposite", "prev"]), ("polygon-soup", [])):
+        page.click(f".card[data-structure={structure}] h3 button")
+        page.click("#first")
+        for _ in range(2):
+            page.click("#next")
+        check(page.browser.run("return labels()") == labels, structure, page.browser.run("return labels()"))
+
+
+CHANGED_ROWS = """
+    const card = document.querySelector(`.card[data-structure=${arguments[0]}]`);
+    return [...card.querySelectorAll('tr[data-row]')].filter(row => row.querySelector('.changed')).map(row => row.dataset.row)
+"""
+
+
+def check_edit_steps(page, path):
+    """An edit plays through its writes: the tables and the mesh of before, row by row, to those of after, and back."""
+    stored = """
+        const card = document.querySelector(`.card[data-structure=${arguments[0]}]`);
+        return [...card.querySelectorAll('tr[data-row]')].map(row => [row.dataset.row, [...row.querySelectorAll('td:not(.derived)')].map(cell => cell.textContent).join()]).sort()
+    """
+    tables = """return document.getElementById('cards').innerHTML.replaceAll(' class=""', '')"""
+    for edit in ("flip_edge v0-v2", "split_edge v0-v2", "set_position v0 1,2,3", "remove_vertex v0"):
+        page.open(path)
+        before = {name: dict(page.browser.run(stored, name)) for name in STRUCTURES}
+        page.edit(edit)
+        native = page.native(mesh={"shape": {"name": "octahedron"}}, ask={"edit": edit})
+        for answer in native["answers"]:
+            name = answer["backend"]
+            if answer["refusal"]:
+                continue
+            page.click(f".card[data-structure={name}] h3 button")
+            writes = [row for row in answer["rows"] if row["written"]]
+            check(page.text("#clock") == f"step {len(writes)} of {len(writes)}", name, edit, page.text("#clock"))
+            end = page.browser.run(tables)
+            page.click("#first")
+            if edit.startswith(("flip", "set")) and name != "face-vertex":
+                # Each row stays, with the same columns.
+                check(dict(page.browser.run(stored, name)) == before[name], name, edit, "the tables before")
+            check(page.browser.run(CHANGED_ROWS, name) == [], name, edit, "nothing is written yet")
+            for number in range(1, len(writes) + 1):
+                page.click("#next")
+                begun = {row["table"] for row in writes[:number]}
+                done = writes[:number] + [row for row in answer["rows"] if not row["written"] and (row["table"] in begun or number == len(writes))]
+                expected = {row["row"] for row in done if row["before"] != row["after"]}
+                check(set(page.browser.run(CHANGED_ROWS, name)) == expected, name, edit, number, page.browser.run(CHANGED_ROWS, name))
+                check(writes[number - 1]["row"] in page.text(f".card[data-structure={name}] .now"), name, edit, number, writes[number-1], page.text(f".card[data-structure={name}] .now"))
+            check(page.browser.run(tables) == end, name, edit, "the end is not as before")
+            page.click("#back")
+            page.click("#next")
+            check(page.browser.run(tables) == end, name, edit, "the end is not as before")
+    # The mesh is the one of before until the last write; so is that of a link.
+    page.open(path)
+    page.browser.run(WATCH)
+    page.edit("poke_face f0")
+    faces = "return window.shownView.model.faceCount"
+    check(page.browser.run(faces) == 10, "the mesh after the edit")
+    page.click("#back")
+    check(page.browser.run(faces) == 8, "the mesh before the edit")
+    page.click("#share-button")
+    link = page.browser.run("return document.getElementById('link').value")
+    page.open(path, link[link.index("#"):])
+    page.browser.run(WATCH)
+    page.click("#first")
+    check(page.browser.run(faces) == 8, "the mesh before the edit of a link")
+    page.click("#last")
+    check(page.browser.run(faces) == 10, "the mesh after the edit of a link")
+
+
+def check_primary(page, path):
+    """One button is the primary one: the one that is pressed next."""
+    shown = """
+        return [...document.querySelectorAll('button.main')].filter(one => one.checkVisibility() && !one.closest('#lesson'))
+            .map(one => one.id || one.dataset.edit || one.dataset.repair)
+    """
+    def expect(*names):
+        check(page.browser.run(shown) == list(names), names, page.browser.run(shown))
+    page.open(path)
+    expect("next")
+    page.click("#next")
+    expect("next")
+    page.click("#last")
+    expect()
+    page.click("[data-tab=edit]")
+    expect("remove_vertex v0")
+    page.edit("flip_edge v0-v2")
+    expect("play")
+    page.click("#first")
+    expect("next")
+    page.click("[data-tab=walk]")
+    expect()
+    write = "const field = document.getElementById('walk-text'); field.value = 'yield v1'; field.dispatchEvent(new Event('input', { bubbles: true }))"
+    page.browser.run(write)
+    expect("run-walk")
+    page.click("#run-walk")
+    expect("next")
+    page.click("[data-tab=measure]")
+    expect("measure")
+    page.click("[data-tab=edit]")
+    page.type("#element", "v0-v3")
+    page.click("button.fault")
+    expect("winged-edge")
+    page.click("[data-repair=half-edge]")
+    expect("take-repair")
 
 
 def check_failure(page, path):
@@ -500,8 +688,13 @@ def check_levels(page, path):
     native = page.native(mesh={"shape": {"name": "octahedron"}}, ask={"stencil": {"scheme": "loop", "level": 1, "point": 8}})
     shown = page.browser.run("return [...document.querySelectorAll('#stencil tr')].map(row => [...row.cells].map(cell => cell.textContent))")
     value = lambda text: int(text.split("/")[0]) / int((text + "/1").split("/")[1]) if "." not in text else float(text)
-    expected = [[parent["vertex"], parent["weight"]] for parent in native["parents"]]
+    # The parents are points of the level before.
+    expected = [[parent["vertex"] + "⁰", parent["weight"]] for parent in native["parents"]]
     check([[name, value(weight)] for name, weight in shown] == expected, shown, expected)
+    check(page.text("#stencil caption").startswith("v8¹ = "), page.text("#stencil caption"))
+    levels = "return [...document.querySelectorAll('#levels tr')].slice(1).map(row => [...row.cells].map(cell => cell.textContent))"
+    # Each vertex of an octahedron has valence 4, each new point of Loop's scheme valence 6.
+    check(page.browser.run(levels) == [["0", "6", "12", "8", "2", "64"], ["1", "18", "48", "32", "2", "64126"]], page.browser.run(levels))
     # A sharp edge stays with its mesh, and goes with an edit that deletes it.
     page.open(path)
     page.type("#element", "v0-v2")
@@ -519,6 +712,37 @@ def check_levels(page, path):
     page.click("[data-tab=subdivide]")
     page.type("#scheme", "doo-sabin")
     check(page.text("#mesh-size") == "24 vertices, 48 edges, 26 faces", page.text("#mesh-size"))
+
+
+def check_regularity(page, path):
+    """Irregular vertices and boundary loops can be seen."""
+    def irregular():
+        page.browser.run("document.querySelector('#names [value=valence]').checked || document.querySelector('#names [value=valence]').click()")
+        return page.browser.run("return window.shownView.valenceMarks().length")
+
+    def open_shape(shape, **parameters):
+        state = {"sixfold": 1, "subject": {"mesh": {"shape": {"name": shape, "parameters": parameters}}}, "name": shape, "edits": []}
+        drop(page, "state.json", json.dumps(state).encode())
+
+    page.open(path)
+    page.browser.run(WATCH)
+    expected = {"octahedron": 6, "triangle-torus": 0, "torus": 0, "grid": 4, "cube": 8, "icosahedron": 12, "dodecahedron": 0}
+    for shape, number in expected.items():
+        open_shape(shape, **({"m": 6, "n": 6} if shape in ("grid", "torus", "triangle-torus") else {}))
+        check(irregular() == number, shape, irregular())
+    loops = "return [...document.querySelectorAll('[data-loop]')].map(one => one.textContent)"
+    for shape, parameters, lengths in (("grid-with-hole", {"m": 3, "n": 3}, [12, 4]), ("moebius", {"n": 6}, None), ("octahedron", {}, [])):
+        open_shape(shape, **parameters)
+        page.click("[data-tab=check]")
+        shown = page.browser.run(loops)
+        if lengths is None:
+            check(len(shown) == 1, shape, shown)
+        else:
+            check(sorted(shown) == sorted(f"{length} edges" for length in lengths), shape, shown)
+    open_shape("grid-with-hole", m=3, n=3)
+    page.click("[data-tab=check]")
+    page.click("[data-loop]")
+    check(page.browser.run("return window.shownMarks.length") in (4, 12), "the marks of a loop")
 
 
 def check_lessons(page, path):
@@ -694,8 +918,8 @@ def main():
         try:
             page = Page(browser, sixfold, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_pointer, check_edits, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
-                         check_walks, check_measurements, check_levels, check_lessons):
+            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+                         check_walks, check_measurements, check_levels, check_regularity, check_lessons):
                 part(page, path)
                 check_quiet(browser)
             check_sizes(page, path, folder)

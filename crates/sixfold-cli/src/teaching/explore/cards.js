@@ -1,16 +1,21 @@
 // The cards: one for each structure, with the steps of its query, and its tables.
 
 import { el, button, count } from "./dom.js";
+import { writeSentence } from "./edit-steps.js";
 import { rowNumber } from "./timeline.js";
 
 // Maximum number of results that a card lists: the last ones.
 const MOST_RESULTS = 100;
+
+// Where headings are parted if there is little room.
+const PARTED = { opposite: "oppo\u00adsite", triangle: "tri\u00adangle" };
 
 // The rows that a card shows, by their names: { element, fields, values by column }. `moved` has the rows that an
 // edit moved, and the names of their elements.
 export class Rows extends Map {
   constructor(moved = []) {
     super();
+    this.moved = moved;
     const elements = new Map(moved);
     // The name of the element in a row of vertices or faces.
     this.elementOf = (row) => elements.get(row) ?? row;
@@ -43,6 +48,8 @@ export class Card {
     this.changes = new Map();
     // The cells of a row of a stored table: "halves h5" -> cells.
     this.cells = new Map();
+    // The tables with their rows in the order of their numbers: { body, lines }.
+    this.bodies = [];
   }
 
   // Shows the tables. `changes` has the rows that the last edit changed: "halves h5" -> change.
@@ -57,40 +64,44 @@ export class Card {
     this.changes = changes;
     this.rows = new Rows(moved);
     this.cells.clear();
-    const scrolled = [...this.tables.children].map((table) => table.scrollTop);
+    this.bodies = [];
     this.tables.replaceChildren(...(records ?? []).map((table) => this.table(table)));
     this.tables.hidden = !records;
-    [...this.tables.children].forEach((table, i) => { table.scrollTop = scrolled[i] ?? 0; });
     this.markChanges();
-    for (const key of [...this.changes.keys()].reverse()) this.scrollTo(key);
+    this.arrange([...this.changes.keys()]);
+    if (this.changes.size) this.tables.scrollTop = 0;
   }
 
   table({ element, columns, total, rows }) {
-    const head = columns.map((column) =>
-      el("th", { title: column.about, scope: "col" }, column.name + (column.derived ? "†" : "")));
+    const head = columns.map((column, i) =>
+      el("th", { title: column.about, scope: "col", class: isSpare(columns, rows, i) && "spare" },
+        el("span", {}, (PARTED[column.name] ?? column.name) + (column.derived ? "†" : ""))));
     const body = [];
     let before = -1;
     for (const row of rows) {
       const number = rowNumber(row.name);
       if (number > before + 1) body.push(gap(columns.length, number - before - 1));
       before = number;
-      body.push(this.row(element, columns, row));
+      body.push(this.row(element, columns, row, rows));
     }
     if (before + 1 < total) body.push(gap(columns.length, total - before - 1));
-    return el("div", { class: "scroll" }, el("table", {},
+    const lines = el("tbody", {}, body);
+    this.bodies.push({ body: lines, lines: body });
+    return el("table", { class: columns.length < 3 && "narrow" },
       el("caption", {}, count(total, element)),
       el("thead", {}, el("tr", {}, el("th", {}), head)),
-      el("tbody", {}, body)));
+      lines);
   }
 
-  row(element, columns, { name, fields }) {
+  row(element, columns, { name, fields }, rows) {
     const line = el("tr", { "data-row": name }, el("th", { scope: "row" }, this.rows.nameOf(name)));
     if (fields.length === 0) {
       line.append(el("td", { colSpan: columns.length, class: "deleted" }, "deleted"));
     }
     fields.forEach((field, i) => {
       const { table, derived } = columns[i];
-      const cell = el("td", { class: derived && "derived", title: field.length > 12 && field }, shortened(field));
+      const kind = derived ? "derived" : isSpare(columns, rows, i) && "spare";
+      const cell = el("td", { class: kind, title: field.length > 12 && field }, shortened(field));
       line.append(cell);
       // A field that is not stored is not read.
       if (!derived) this.keep(`${table} ${name}`, cell);
@@ -108,41 +119,77 @@ export class Card {
 
   // Marks what the last edit changed, with the values before.
   markChanges() {
-    for (const [key, change] of this.changes) {
-      const cells = this.cells.get(key);
-      if (!cells) continue;
-      const kind = !change.before ? "made" : !change.after ? "removed" : null;
-      if (kind) {
-        for (const cell of cells) cell.classList.add("changed", kind);
-        if (kind === "removed") cells[0].textContent = `deleted, was ${change.before.join(", ")}`;
-        continue;
-      }
-      change.after.forEach((value, i) => {
-        if (!cells[i] || value === change.before[i]) return;
-        cells[i].classList.add("changed");
-        cells[i].replaceChildren(el("s", {}, change.before[i]), " ", value);
-      });
-    }
+    this.shownAs = new Map();
+    this.deletedIn = new Map();
+    const last = [...this.changes].reverse().sort(([, a], [, b]) => Number(a.written) - Number(b.written));
+    for (const [key, { before }] of last) if (before) this.deletedIn.set(this.cells.get(key)?.[0], key);
+    for (const [key, change] of this.changes) this.showChange(key, change, true);
   }
 
-  // Shows the steps of a query or walk; without one, none.
-  follow(timeline) {
+  // Shows a row before an edit, or after it with what it changed.
+  showChange(key, { before, after }, isAfter) {
+    const cells = this.cells.get(key);
+    if (!cells || this.shownAs.get(key) === isAfter) return;
+    this.shownAs.set(key, isAfter);
+    const kind = !before ? "made" : !after ? "removed" : null;
+    cells.forEach((cell, i) => {
+      // The one cell of a deleted row stands for all its tables: it has the values of the first that is written.
+      if (cell.classList.contains("deleted") && (!before || this.deletedIn.get(cell) !== key)) return;
+      const [old, now] = [before?.[i], after?.[i]].map((value) => (value === undefined ? value : shortened(value)));
+      cell.classList.toggle("changed", isAfter && (kind !== null || old !== now));
+      if (kind) cell.classList.toggle(kind, isAfter);
+      if (!isAfter) cell.textContent = !before ? "–" : after ? old : before.join(", ");
+      else if (kind === "removed") cell.textContent = `deleted, was ${before.join(", ")}`;
+      else if (kind === "made" || old === now) cell.textContent = now ?? "";
+      else cell.replaceChildren(el("s", {}, old), " ", now);
+    });
+  }
+
+  // Puts the rows of some keys before the others of their tables, in the order of the keys. The others keep theirs.
+  arrange(keys) {
+    const first = new Set(keys.flatMap((key) => this.cells.get(key)?.[0].parentElement ?? []));
+    const focused = this.tables.contains(document.activeElement) ? document.activeElement : null;
+    for (const { body, lines } of this.bodies) {
+      const own = [...first].filter((line) => line.parentElement === body);
+      body.querySelector(".last-first")?.classList.remove("last-first");
+      own.at(-1)?.classList.add("last-first");
+      let at = body.firstElementChild;
+      for (const line of [...own, ...lines.filter((other) => !first.has(other))]) {
+        if (line === at) at = at.nextElementSibling;
+        else body.insertBefore(line, at);
+      }
+    }
+    // An element that moves loses the focus.
+    if (focused !== document.activeElement) focused?.focus({ preventScroll: true });
+  }
+
+  // Shows the steps of a query or walk, or the writes of an edit; without one, none.
+  follow(timeline, steps) {
     this.timeline = timeline;
+    this.steps = steps;
+    this.now.replaceChildren();
     const lines = timeline ? timeline.answer.algorithm : [];
-    this.code.replaceChildren(...lines.map((line) => el("li", {}, line)));
+    this.code.replaceChildren(...lines.map((line) => el("li", { title: line }, line)));
     this.code.hidden = lines.length === 0;
-    this.now.hidden = this.results.hidden = !timeline;
+    this.now.hidden = !timeline && !steps?.length;
+    this.results.hidden = !timeline;
     this.first = new Map();
     for (const key of timeline ? this.cells.keys() : []) {
       const [table, row] = key.split(/ (?=\S+$)/);
       this.first.set(key, timeline.firstRead(table, row));
     }
+    // The rows that are read, in the order of their first reads.
+    this.readKeys = [...this.first.keys()].filter((key) => this.first.get(key) < Infinity)
+      .sort((a, b) => this.first.get(a) - this.first.get(b));
+    this.arranged = null;
+    if (!timeline && this.changes.size === 0) this.arrange([]);
     this.lit = new Map();
     for (const cells of this.cells.values()) for (const cell of cells) cell.classList.remove("read-now", "read");
   }
 
-  // Shows one time.
-  at(time) {
+  // Shows one time; `isEnd` if it is the end for the structure in front.
+  at(time, isEnd) {
+    if (this.steps) this.atWrite(isEnd ? this.steps.length : time, isEnd);
     if (!this.timeline) return;
     const found = this.timeline.at(time);
     const read = this.timeline.readAt(time);
@@ -156,6 +203,9 @@ export class Card {
         cell.classList.toggle("read", want === "read");
       }
     }
+    const known = this.readKeys.filter((name) => this.first.get(name) <= time);
+    if (known.length !== this.arranged) this.arrange(known);
+    this.arranged = known.length;
     const line = found?.step.line ?? null;
     [...this.code.children].forEach((item, i) => item.classList.toggle("marked", i === line));
     this.now.replaceChildren(...sentence(found, this.rows, this.records ?? []));
@@ -166,24 +216,48 @@ export class Card {
     this.current = key;
   }
 
+  // Shows the rows of an edit at one time. The row at hand is lit until the end.
+  atWrite(time, isEnd) {
+    for (const [key, change] of this.changes) this.showChange(key, change, this.steps.isWritten(key, time));
+    const write = this.steps.at(time);
+    const key = write && !isEnd ? `${write.table} ${write.row}` : null;
+    if (this.current !== key) {
+      for (const cell of this.cells.get(this.current) ?? []) cell.classList.remove("read-now");
+      for (const cell of this.cells.get(key) ?? []) cell.classList.add("read-now");
+    }
+    this.current = key;
+    this.now.replaceChildren(...writeSentence(write));
+  }
+
   // Scrolls the tables to the row of the last step: after all cards have changed, so that the page is laid out once.
   reveal() {
-    if (this.timeline) this.scrollTo(this.current);
+    if (!this.timeline && !this.steps) return;
+    this.scrollTo(this.current);
+    if (this.timeline) this.showLine();
   }
 
   // Scrolls the tables so that a row can be seen. Only the tables move, not the page.
   scrollTo(key) {
-    const cells = this.cells.get(key);
-    if (!cells) return;
-    const table = cells[0].closest(".scroll");
-    const [box, inside] = [table.getBoundingClientRect(), cells[0].getBoundingClientRect()];
-    if (inside.top < box.top + 40 || inside.bottom > box.bottom - 8) {
-      table.scrollTop += inside.top - box.top - box.height / 2;
-    }
-    const [wide, row] = [this.tables.getBoundingClientRect(), cells[0].parentElement.firstChild.getBoundingClientRect()];
-    const end = cells.at(-1).getBoundingClientRect().right;
-    if (end > wide.right || row.left < wide.left) this.tables.scrollLeft += row.left - wide.left - 4;
+    const row = this.cells.get(key)?.[0].parentElement;
+    if (!row) return;
+    const head = row.closest("table").tHead.getBoundingClientRect().height;
+    const [box, inside] = [this.tables.getBoundingClientRect(), row.getBoundingClientRect()];
+    if (inside.top < box.top + head) this.tables.scrollTop += inside.top - box.top - head - 20;
+    else if (inside.bottom > box.bottom - 4) this.tables.scrollTop += inside.bottom - box.bottom + Math.min(60, box.height / 3);
   }
+
+  // Scrolls the program to its line at hand, where only some of its lines have room.
+  showLine() {
+    const line = this.code.querySelector(".marked");
+    this.code.scrollTop = line ? line.offsetTop - this.code.offsetTop - line.offsetHeight : 0;
+  }
+}
+
+// Whether a column can be left out where there is no room: coordinates, if the table also has a stored column that
+// connects elements.
+function isSpare(columns, rows, i) {
+  const isPosition = rows.some(({ fields }) => fields[i]?.startsWith("("));
+  return isPosition && columns.some((column, k) => k !== i && !column.derived);
 }
 
 // A field whose coordinates have four digits at most.

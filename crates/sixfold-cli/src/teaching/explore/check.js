@@ -35,6 +35,7 @@ export function checkPanel(explorer) {
       repairTable(explorer),
       el("h3", {}, faults.length ? "Faults and boundaries" : "No faults"),
       el("ul", { id: "faults" }, faults.map((fault) => faultItem(explorer, fault))),
+      loopList(explorer),
       factsLine(facts)),
   ];
 }
@@ -48,6 +49,16 @@ function faultItem(explorer, { title, count: number, places, repairs }) {
   const all = button("mark all", () => explorer.run(() => explorer.mark(places.flatMap(namesOf))), { class: "link" });
   return el("li", {}, `${number.toLocaleString("en")} ${title}: `, links, number > shown.length ? " … " : " ", all,
     repairs.length ? el("span", { class: "hint" }, ` repaired by: ${repairs.join(", ")}`) : null);
+}
+
+// The boundary loops of the mesh, each with a button that marks it.
+function loopList(explorer) {
+  const loops = explorer.model.boundaryLoops();
+  if (loops.length === 0) return null;
+  const mark = (names) => () => explorer.run(() => explorer.mark(names));
+  const shown = loops.slice(0, 20).map((loop) => button(count(loop.length, "edge"), mark(loop), { class: "link", "data-loop": "" }));
+  return el("p", { id: "loops" }, `${count(loops.length, "boundary loop")}: `, shown, loops.length > shown.length ? " … " : " ",
+    button("mark all", mark(loops.flat()), { class: "link" }));
 }
 
 function factsLine(facts) {

@@ -72,7 +72,7 @@ export async function shareDialog(explorer) {
   openDialog("Share what is shown", [
     link ? el("p", {}, "A link with the mesh, the edits and the step, for a page on a server or this file on this machine: ", field, button("Copy", copy, { class: "main" }), copied)
       : el("p", {}, "This mesh is too large for a link. Save the state, and send the file."),
-    el("p", {}, button("Save the state", save, { id: "save", class: "main" }), " as a file. Drop the file on this page to open it."),
+    el("p", {}, button("Save the state", save, { id: "save", class: !link && "main" }), " as a file. Drop the file on this page to open it."),
   ]);
 }
 

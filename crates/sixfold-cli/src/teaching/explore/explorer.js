@@ -1,6 +1,7 @@
 // The explorer: what is shown, and how it changes. Panels and cards call its methods.
 
 import { check } from "./check.js";
+import { editSteps } from "./edit-steps.js";
 import { EngineFailure } from "./engine.js";
 import { Model, edgeName, parseName } from "./mesh.js";
 import { relationFor } from "./query.js";
@@ -71,7 +72,8 @@ export class Explorer {
     }
     const picked = this.picked.filter((name) => shown.model.has(name));
     Object.assign(this, shown, { picked, marked: [], isRefused: false });
-    this.view.time = Math.min(this.view.time, this.length);
+    // An edit is shown as it is at its end.
+    this.view.time = this.view.tab === "edit" ? this.length : Math.min(this.view.time, this.length);
   }
 
   // Shows another mesh; the one before comes back with undo.
@@ -160,7 +162,15 @@ export class Explorer {
     this.tell("time");
   }
 
+  // Chooses the structure in front. An edit that is shown at its end stays there: each structure writes other rows.
+  bringToFront(structure) {
+    const isAtEnd = this.view.time >= this.length;
+    this.view.focus = structure;
+    if (this.view.tab === "edit") this.view.time = isAtEnd ? this.length : Math.min(this.view.time, this.length);
+  }
+
   get length() {
+    if (this.view.tab === "edit") return editSteps(this, this.view.focus)?.length ?? 0;
     return Math.max(0, ...[...this.timelines.values()].map((timeline) => timeline.length));
   }
 
@@ -176,7 +186,7 @@ export class Explorer {
     view.relation = relationFor(view.relation, parseName(view.element).kind);
     if (view.tab === "query") await this.trace(shown, asked);
     if (view.tab === "walk") await this.walk(shown, asked);
-    if (view.tab === "edit") shown.lastEdit = lastEdit ?? await this.lastEditOf(state);
+    if (view.tab === "edit") shown.lastEdit = lastEdit ?? await this.lastEditOf(state, base);
     shown.subject = subjectOf(state, base.geometry);
     if (view.tab === "subdivide") await refine(this.engine, shown);
     if (view.tab === "check") await check(this.engine, shown);
@@ -235,11 +245,17 @@ export class Explorer {
   }
 
   // What the last edit did, asked again.
-  async lastEditOf(state) {
+  async lastEditOf(state, base) {
     if (state.edits.length === 0) return null;
     const last = state.edits.length - 1;
     const structures = this.structures.filter((structure) => (state.stopped[structure] ?? last) >= last);
-    return this.askEdit({ ...state, edits: state.edits.slice(0, last) }, structures, state.edits[last]);
+    const before = { ...state, edits: state.edits.slice(0, last) };
+    const done = await this.askEdit(before, structures, state.edits[last]);
+    const hasVertices = (structure) => base.records.get(structure)?.records.some(({ element }) => element === "vertex");
+    const holding = [...done.answers.keys()];
+    const request = { structures: [holding.find(hasVertices) ?? holding[0]], edits: before.edits, ask: "geometry" };
+    const [geometry] = holding.length ? (await this.engine.ask(state.subject, request)).answers : [];
+    return { ...done, before: geometry ? new Model(geometry) : null };
   }
 
   // Runs an edit in the engine. Returns { edit, answers, refusals } by structure.
@@ -270,6 +286,7 @@ export class Explorer {
     const edit = [...done.answers.values()][0].edit;
     this.picked = [];
     const { model, view: { element } } = this;
+    done.before = model;
     await this.advance(withEdit(state, edit, refusing), { ...this.view, tab: "edit", time: 0 }, done);
     this.nameEdges(model, element);
     this.tell("all");
@@ -351,7 +368,7 @@ export class Explorer {
     const shown = this.structures.filter((name) => (name === structure ? !isShown : this.shown.includes(name)));
     if (shown.length === 0) return;
     this.view.only = shown.length === this.structures.length ? "" : shown.join(",");
-    if (!shown.includes(this.view.focus)) [this.view.focus] = shown;
+    if (!shown.includes(this.view.focus)) this.bringToFront(shown[0]);
     this.tell("all");
   }
 

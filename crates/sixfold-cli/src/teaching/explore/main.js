@@ -4,16 +4,18 @@ import { Card, Rows } from "./cards.js";
 import { helpDialog, meshDialog, openFile, shareDialog } from "./dialogs.js";
 import { button, count, el, find } from "./dom.js";
 import { changesOf } from "./edit.js";
+import { editSteps } from "./edit-steps.js";
 import { Engine, fromBase64, gunzip } from "./engine.js";
 import { Explorer } from "./explorer.js";
 import { lessonView } from "./lesson.js";
-import { marks } from "./marks.js";
-import { panel } from "./panels.js";
+import { drawnModel, marks } from "./marks.js";
+import { markPrimary, panel } from "./panels.js";
 import { Player } from "./player.js";
 import { Quiz } from "./quiz.js";
 import { Race } from "./race.js";
 import { defaultView, fromLink, fromText, meshState } from "./state.js";
 import { Store } from "./store.js";
+import { levelMark } from "./subdivide.js";
 import { View } from "./view.js";
 
 // Requests that take longer can be stopped.
@@ -52,7 +54,8 @@ class Page {
     const { explorer } = this;
     if (explorer.view.tab === "walk") explorer.run(() => explorer.look({ focus: structure }));
     else {
-      explorer.set({ focus: structure });
+      explorer.bringToFront(structure);
+      explorer.tell("time");
       if (explorer.view.quiz) this.quiz.turn(true);
     }
   }
@@ -72,13 +75,16 @@ class Page {
     const { view } = explorer;
     if (this.front !== view.focus) this.bringToFront(view.focus);
     for (const [name, card] of this.cards) {
-      card.at(view.time);
+      card.at(view.time, view.time >= explorer.length);
       card.element.classList.toggle("front", name === view.focus);
       // A screen reader says the steps of the structure in front.
       card.now.setAttribute("aria-live", name === view.focus ? "polite" : "off");
     }
     for (const card of this.cards.values()) card.reveal();
+    this.draw();
     this.mark();
+    if (what === "all") this.ranWalk = view.walk;
+    markPrimary(explorer, this.ranWalk);
   }
 
   // Scrolls the cards to the structure in front, where they are beside one another in one row.
@@ -90,11 +96,9 @@ class Page {
 
   showAll() {
     const { explorer } = this;
-    const { view, state, model } = explorer;
-    const isLevel = view.tab === "subdivide" && explorer.refined;
-    const shown = isLevel ? explorer.refined.models[view.level] : model;
-    if (this.shown !== shown) this.view.show(shown);
-    this.shown = shown;
+    const { view, state } = explorer;
+    this.draw();
+    const { shown } = this;
     find("mesh-name").textContent = state.name;
     find("mesh-size").textContent =
       [count(shown.vertexCount, "vertex"), count(shown.edges.size, "edge"), count(shown.faceCount, "face")].join(", ");
@@ -112,9 +116,19 @@ class Page {
       title: `show or hide ${name}`,
     }))));
     find("cards").classList.toggle("single", view.tab === "walk");
-    find("player").hidden = view.tab !== "query" && view.tab !== "walk";
+    find("player").hidden = view.tab === "edit" ? explorer.length === 0 : view.tab !== "query" && view.tab !== "walk";
+    find("player").classList.toggle("edit", view.tab === "edit");
     for (const [name, card] of this.cards) this.showCard(name, card);
     this.showLesson();
+  }
+
+  // Draws the mesh if it is another one than before.
+  draw() {
+    const { explorer } = this;
+    const shown = drawnModel(explorer);
+    const suffix = explorer.view.tab === "subdivide" && explorer.refined ? levelMark(explorer.view.level) : "";
+    if (this.shown !== shown || this.suffix !== suffix) this.view.show(shown, suffix);
+    Object.assign(this, { shown, suffix });
   }
 
   showCard(name, card) {
@@ -133,7 +147,7 @@ class Page {
       card.reason.append(" ", button("triangulate", () => explorer.run(() =>
         explorer.withSubject({ ...explorer.subject, triangulate: true }))));
     }
-    card.follow(explorer.timelines.get(name));
+    card.follow(explorer.timelines.get(name), editSteps(explorer, name));
     card.element.hidden = view.tab === "walk" ? name !== view.focus : !explorer.shown.includes(name);
   }
 
@@ -185,10 +199,21 @@ class Page {
     const { explorer } = this;
     const style = getComputedStyle(document.documentElement);
     const rowsOf = (structure) => this.cards.get(structure)?.rows ?? new Rows();
-    this.view.mark(marks(explorer, rowsOf, (name) => style.getPropertyValue(name).trim()));
+    const list = marks(explorer, rowsOf, (name) => style.getPropertyValue(name).trim());
+    this.view.mark(list);
+    this.turnToMark(list.find((mark) => mark.isAtHand));
     const refusals = explorer.lastEdit?.refusals ?? new Map();
     find("say").hidden = refusals.size === 0;
     find("say").textContent = refusalText(refusals, explorer.isRefused);
+  }
+
+  // Turns the mesh to the element at hand if it is another one than before. Fast steps do not turn it.
+  turnToMark(mark) {
+    const key = mark && `${mark.label} ${this.explorer.view.time}`;
+    if (key === this.atHand) return;
+    this.atHand = key;
+    const isFast = this.player.isPlaying && Number(find("speed").value) > 5;
+    if (mark && !isFast) this.view.turnTo(mark.place);
   }
 
   listen() {
@@ -230,6 +255,7 @@ class Page {
         this.view.drawOverlay();
       });
     }
+    find("panel").addEventListener("input", () => markPrimary(explorer, this.ranWalk));
     find("quiz").addEventListener("change", (event) => this.quiz.turn(event.target.checked));
     const open = (file) => file && explorer.run(() => openFile(explorer, file));
     find("file").addEventListener("change", (event) => {

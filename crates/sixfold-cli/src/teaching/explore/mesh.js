@@ -1,5 +1,8 @@
 // The mesh as the page draws it: positions, faces and edges by the numbers of their names.
 
+// The valences of regular vertices inside and at a boundary, by the corners of the faces.
+const REGULAR = { 3: [6, 4], 4: [4, 3] };
+
 // A mesh with its edges, its bounds and the triangles that cover its faces. `geometry` is that of the engine:
 // an element that was deleted is null.
 export class Model {
@@ -23,6 +26,51 @@ export class Model {
     });
     this.measure();
     this.cover();
+  }
+
+  // For each vertex its edges, and whether it is at a boundary: { valence, isBoundary, isIrregular }; null without a vertex.
+  // A vertex is regular if it is one of a plane that is tiled by the polygons of the mesh. Without such a tiling, none is
+  // irregular. Computed once.
+  get valences() {
+    if (this.counted) return this.counted;
+    this.counted = this.vertices.map((vertex) => vertex && { valence: 0, isBoundary: false });
+    for (const { ends, faces } of this.edges.values()) {
+      for (const v of ends) {
+        this.counted[v].valence += 1;
+        if (faces.length === 1) this.counted[v].isBoundary = true;
+      }
+    }
+    const degrees = new Set(this.faces.filter((face) => face).map((face) => face.length));
+    const [inside, atBoundary] = (degrees.size === 1 && REGULAR[[...degrees][0]]) || [];
+    for (const one of this.counted) {
+      const regular = one?.isBoundary ? atBoundary : inside;
+      if (one) one.isIrregular = regular !== undefined && one.valence > 0 && one.valence !== regular;
+    }
+    return this.counted;
+  }
+
+  // The closed chains of edges with one face, as lists of names. At a vertex where chains touch, one of them goes on.
+  // Faces need not agree on a side.
+  boundaryLoops() {
+    const at = new Map();
+    const add = (v, edge) => at.set(v, [...at.get(v) ?? [], edge]);
+    for (const edge of this.edges.values()) if (edge.faces.length === 1) for (const v of edge.ends) add(v, edge);
+    const used = new Set();
+    const next = (v) => at.get(v).find((edge) => !used.has(edge));
+    const loops = [];
+    for (const start of at.keys()) {
+      while (next(start)) {
+        const loop = [];
+        for (let v = start, edge = next(v); edge; edge = next(v)) {
+          used.add(edge);
+          loop.push(edge.name);
+          v = edge.ends[0] === v ? edge.ends[1] : edge.ends[0];
+          if (v === start) break;
+        }
+        loops.push(loop);
+      }
+    }
+    return loops;
   }
 
   // The centre and the radius of the mesh.
@@ -80,6 +128,31 @@ export class Model {
     if (!face) return null;
     const points = face.map((v) => this.vertices[v]);
     return { kind: "face", points, at: average(points) };
+  }
+
+  // Whether no face is between a point of the mesh and an eye. The faces at the point are not between.
+  isFree(point, eye) {
+    const way = minus(eye, point);
+    const { triangles, vertices } = this;
+    for (let i = 0; i < triangles.length; i += 4) {
+      const a = vertices[triangles[i]];
+      const hit = meeting(point, way, a, minus(vertices[triangles[i + 1]], a), minus(vertices[triangles[i + 2]], a));
+      if (hit && hit.t > 2e-3 && hit.t < 1) return false;
+    }
+    return true;
+  }
+
+  // The sum of the unit normals of the triangles at a point of the mesh.
+  normalAt(point) {
+    const { triangles, vertices } = this;
+    let sum = [0, 0, 0];
+    for (let i = 0; i < triangles.length; i += 4) {
+      const [a, b, c] = [vertices[triangles[i]], vertices[triangles[i + 1]], vertices[triangles[i + 2]]];
+      const normal = unit(cross(minus(b, a), minus(c, a)));
+      const hit = meeting(point, normal, a, minus(b, a), minus(c, a));
+      if (hit && Math.abs(hit.t) < 1e-3 * this.radius) sum = plus(sum, normal);
+    }
+    return sum;
   }
 
   // The corner of a face at a vertex, moved a little into the face.
@@ -147,6 +220,20 @@ function cut(points) {
   return [...triangles, rest];
 }
 
+// Where a line meets the triangle at `a` with two sides: { t } along the line, or null (Möller and Trumbore, 1997).
+// The border of the triangle belongs to it.
+function meeting(point, way, a, ab, ac) {
+  const across = cross(way, ac);
+  const volume = dot(ab, across);
+  if (Math.abs(volume) < 1e-12) return null;
+  const from = minus(point, a);
+  const u = dot(from, across) / volume;
+  const aside = cross(from, ab);
+  const v = dot(way, aside) / volume;
+  if (u < -1e-6 || v < -1e-6 || u + v > 1 + 1e-6) return null;
+  return { t: dot(ac, aside) / volume };
+}
+
 // The vector of a polygon's area (Newell): normal to it.
 export function areaOf(points) {
   let sum = [0, 0, 0];
@@ -161,6 +248,7 @@ export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const unit = (a) => scale(a, 1 / (Math.hypot(...a) || 1));
 export const length = (a) => Math.hypot(...a);
 export const mix = (a, b, t) => [0, 1, 2].map((axis) => a[axis] * (1 - t) + b[axis] * t);
 export const average = (points) => scale(points.reduce(plus, [0, 0, 0]), 1 / points.length);

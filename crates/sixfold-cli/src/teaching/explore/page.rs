@@ -15,7 +15,7 @@ pub(crate) const LESSONS_DATA: &str = include_str!("lessons.json");
 const ENGINE: &[u8] = include_bytes!("engine.wasm.gz");
 
 /// The scripts, each after those that it imports from.
-const SCRIPTS: [&str; 26] = [
+const SCRIPTS: [&str; 27] = [
     include_str!("dom.js"),
     include_str!("engine.js"),
     include_str!("mesh.js"),
@@ -25,6 +25,7 @@ const SCRIPTS: [&str; 26] = [
     include_str!("store.js"),
     include_str!("answer.js"),
     include_str!("timeline.js"),
+    include_str!("edit-steps.js"),
     include_str!("cards.js"),
     include_str!("places.js"),
     include_str!("subdivide.js"),

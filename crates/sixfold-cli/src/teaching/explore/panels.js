@@ -16,6 +16,27 @@ const PANELS = {
   measure: measurePanel,
 };
 
+// The buttons that can be the primary one. A panel without steps has its own.
+const PRIMARY = ["#next", "#play", "#run-walk", "#edits button", "[data-repair]"];
+
+// The button that is pressed next, as a selector; null if the next thing is not a button. `ranWalk` is the walk that was
+// run last.
+function nextButton(explorer, ranWalk) {
+  const { view, length, checked } = explorer;
+  const step = view.time < length ? "#next" : null;
+  if (view.tab === "query") return view.quiz ? null : step;
+  if (view.tab === "edit") return step ?? (length ? "#play" : "#edits button");
+  if (view.tab === "walk" && view.walk.trim()) return view.walk === ranWalk && !explorer.failed ? step : "#run-walk";
+  return view.tab === "check" && !checked?.repair ? "[data-repair]" : null;
+}
+
+// Makes the button that is pressed next the primary one.
+export function markPrimary(explorer, ranWalk) {
+  const selector = nextButton(explorer, ranWalk);
+  const primary = selector && document.querySelector(selector);
+  for (const one of document.querySelectorAll(PRIMARY.join())) one.classList.toggle("main", one === primary);
+}
+
 // The elements of the panel of the current tab.
 export function panel(explorer) {
   return PANELS[explorer.view.tab](explorer).filter((part) => part);

@@ -22,7 +22,7 @@ export class Player {
   }
 
   get isQuiz() {
-    return this.explorer.view.quiz;
+    return this.explorer.view.quiz && this.explorer.view.tab !== "edit";
   }
 
   to(time) {

@@ -18,7 +18,7 @@ export class Race {
   update() {
     const { timelines, view } = this.explorer;
     const most = Math.max(1, ...[...timelines.values()].map((timeline) => timeline.reads[timeline.length]));
-    find("race").hidden = timelines.size === 0;
+    find("race").classList.toggle("empty", timelines.size === 0);
     for (const [name, { row, bar, counts }] of this.rows) {
       const timeline = timelines.get(name);
       row.classList.toggle("absent", !timeline);

@@ -47,22 +47,49 @@ export function subdividePanel(explorer) {
       level > 0 && shown ? pointField(shown, point, look) : null,
       creaseForm(explorer),
       explorer.failed ? el("p", { class: "refusal" }, explorer.failed) : null,
-      shown ? el("table", { class: "list" },
-        el("tr", {}, ["level", "vertices", "edges", "faces"].map((text) => el("th", {}, text))),
-        models.map((model, i) => el("tr", {}, [i, model.vertexCount, model.edges.size, model.faceCount].map((value) =>
-          el("td", { class: "count" }, value.toLocaleString("en")))))) : null,
+      shown ? levelTable(models) : null,
       stencilTable(explorer.stencil, level) ?? el("p", { class: "hint" }, point === null
         ? "Click a point of a level above 0: the points of the level before that it is made of are shown with their weights."
         : "")),
   ];
 }
 
+// The level as a mark after the name of an element: v6 of level 0 and v6 of level 1 are two points.
+export const levelMark = (level) => [...String(level)].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]).join("");
+
+function levelTable(models) {
+  return el("table", { class: "list", id: "levels" },
+    el("tr", {}, ["level", "vertices", "edges", "faces", "V − E + F", "vertices by valence"].map((text) => el("th", {}, text))),
+    models.map((model, i) => {
+      const [v, e, f] = [model.vertexCount, model.edges.size, model.faceCount];
+      return el("tr", {}, [i, v, e, f, v - e + f].map((value) => el("td", { class: "count" }, value.toLocaleString("en"))),
+        el("td", {}, histogram(model)));
+    }));
+}
+
+// How many vertices have each valence. Irregular ones have another colour.
+function histogram(model) {
+  const counts = new Map();
+  for (const one of model.valences) {
+    if (!one) continue;
+    const bin = counts.get(one.valence) ?? { all: 0, irregular: 0 };
+    bin.all += 1;
+    bin.irregular += one.isIrregular ? 1 : 0;
+    counts.set(one.valence, bin);
+  }
+  const most = Math.max(1, ...[...counts.values()].map(({ all }) => all));
+  const columns = [...counts].sort(([a], [b]) => a - b).map(([valence, { all, irregular }]) =>
+    el("span", { class: irregular === all && "irregular", title: `${count(all, "vertex")} of valence ${valence}, ${irregular.toLocaleString("en")} of them irregular` },
+      el("b", {}, all.toLocaleString("en")), el("i", { style: `height: ${Math.max(2, Math.round((22 * all) / most))}px` }), `${valence}`));
+  return el("div", { class: "histogram" }, columns);
+}
+
 function pointField(shown, point, look) {
   const take = (event) => {
-    const name = event.target.value.trim();
+    const name = event.target.value.trim().replace(/[^v\d]+$/, "");
     look({ point: shown.place(name)?.kind === "vertex" ? name : null });
   };
-  return el("p", {}, el("label", {}, "point ", el("input", { value: point ?? "", size: 7, id: "point", placeholder: "v8", spellcheck: "false", onchange: take })));
+  return el("p", {}, el("label", {}, "point of this level ", el("input", { value: point ?? "", size: 7, id: "point", placeholder: "v8", spellcheck: "false", onchange: take })));
 }
 
 function stencilTable(stencil, level) {
@@ -70,8 +97,8 @@ function stencilTable(stencil, level) {
   const { point, parents } = stencil;
   const sum = parents.reduce((total, { weight }) => total + weight, 0);
   return el("table", { class: "list", id: "stencil" },
-    el("caption", {}, `${point} of level ${level} = ${count(parents.length, "point")} of level ${level - 1}, weights ${fraction(sum)}`),
-    parents.map(({ vertex, weight }) => el("tr", {}, el("th", { scope: "row" }, vertex), el("td", { class: "count" }, fraction(weight)))));
+    el("caption", {}, `${point}${levelMark(level)} = ${count(parents.length, "point")} of level ${level - 1}, weights ${fraction(sum)}`),
+    parents.map(({ vertex, weight }) => el("tr", {}, el("th", { scope: "row" }, vertex + levelMark(level - 1)), el("td", { class: "count" }, fraction(weight)))));
 }
 
 // The denominators of weights: those of regular vertices, and of vertices of other valences with rational weights.

@@ -1,14 +1,19 @@
 // The mesh in 3D: turning, zooming, names, marks and arrows, and the element below the pointer.
 
-import { areaOf, average, edgeName, length, minus, mix, scale } from "./mesh.js";
+import { areaOf, average, dot, edgeName, length, minus, mix, plus, scale, unit } from "./mesh.js";
 import { Raster, pixel } from "./raster.js";
 
 // Larger meshes are drawn without the lines of edges, unless they are seen from near.
 const MOST_LINES = 60000;
 // Meshes with more elements show the names of chosen and read elements only.
 const MOST_NAMES = 90;
+// Maximum number of irregular vertices that are marked.
+const MOST_DOTS = 1000;
 // Distance of the eye from the centre, in radii of the mesh.
 const EYE = 4.2;
+// The time of a turn to an element, and the angle from its normal at which it is seen then.
+const TURN_MS = 300;
+const ASLANT = 0.3;
 
 export class View {
   // `onChoose(name, more)` is called with the element that is clicked; `more` if Shift is pressed.
@@ -17,7 +22,7 @@ export class View {
     this.overlay = overlay;
     this.onChoose = onChoose;
     this.raster = new Raster();
-    this.names = { vertex: true, edge: false, face: true };
+    this.names = { vertex: true, edge: false, face: true, valence: false };
     this.marks = [];
     this.reset();
     this.listen();
@@ -25,13 +30,16 @@ export class View {
   }
 
   reset() {
+    this.turning = null;
     this.turn = rotation(0.5, 0.45);
     this.zoom = 1;
     this.shift = [0, 0];
   }
 
-  // Shows a mesh. The view stays as it is if the mesh is at about the same place.
-  show(model) {
+  // Shows a mesh, with a mark after the names of its elements. The view stays as it is if the mesh is at about the same
+  // place.
+  show(model, suffix = "") {
+    this.suffix = suffix;
     const before = this.model;
     this.model = model;
     const moved = before && length(minus(before.centre, model.centre)) > 0.6 * model.radius;
@@ -44,7 +52,7 @@ export class View {
     this.draw();
   }
 
-  // Marks elements: { place, colour, label, style } each, `style` fill, dot, line, arrow or ring.
+  // Marks elements: { place, colour, label, style } each, `style` fill, dot, line, arrow, thin (an arrow) or ring.
   mark(marks) {
     this.marks = marks;
     this.drawOverlay();
@@ -68,12 +76,13 @@ export class View {
     const started = performance.now();
     this.drawMesh();
     // While a large mesh is turned, it is drawn with fewer pixels.
-    this.coarse = this.isTurning && performance.now() - started > 30 ? 2 : this.isTurning ? this.coarse ?? 1 : 1;
+    const isMoving = this.isTurning || this.turning;
+    this.coarse = isMoving && performance.now() - started > 30 ? 2 : isMoving ? this.coarse ?? 1 : 1;
     this.drawOverlay();
   }
 
   drawMesh() {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2) / (this.isTurning ? this.coarse ?? 1 : 1);
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) / (this.isTurning || this.turning ? this.coarse ?? 1 : 1);
     const { raster, model } = this;
     const [width, height] = this.size.map((side) => Math.max(1, Math.round(side * ratio)));
     raster.resize(width, height);
@@ -169,11 +178,12 @@ export class View {
     pen.clearRect(0, 0, width, height);
     pen.lineCap = pen.lineJoin = "round";
     const labels = [];
-    for (const mark of this.marks) {
+    for (const mark of [...this.valenceMarks(), ...this.marks]) {
       if (!mark.place) continue;
       this.drawMark(pen, mark);
-      if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: true, colour: mark.colour });
+      if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: true, ...(mark.style === "thin" && thinLabel(mark.place)) });
     }
+    labels.sort((a, b) => Number(a.isThin ?? false) - Number(b.isThin ?? false));
     this.drawLabels(pen, [...labels, ...this.ownNames()]);
   }
 
@@ -201,15 +211,35 @@ export class View {
       pen.arc(at[0], at[1], 6, 0, 2 * Math.PI);
       pen.fill();
     } else {
-      pen.lineWidth = 4;
+      pen.lineWidth = style === "thin" ? 2 : 4;
       const [from, to] = [points[0], points.at(-1)];
       pen.moveTo(from[0], from[1]);
       pen.lineTo(to[0], to[1]);
       pen.stroke();
-      if (style === "arrow") arrowHead(pen, from, to);
+      if (style !== "line") arrowHead(pen, from, to, style === "thin" ? 9 : 14);
     }
     pen.globalAlpha = 1;
     pen.setLineDash([]);
+  }
+
+  // The name of a vertex, its valence, or both.
+  vertexLabel(v) {
+    const name = `v${v}${this.suffix}`;
+    if (!this.names.valence) return name;
+    const { valence } = this.model.valences[v];
+    return this.names.vertex ? `${name}: ${valence}` : String(valence);
+  }
+
+  // Dots for irregular vertices, with their valences in a mesh that is too large for all names.
+  valenceMarks() {
+    const { model, names } = this;
+    if (!names.valence) return [];
+    const colour = getComputedStyle(document.documentElement).getPropertyValue("--irregular").trim();
+    const irregular = [...model.vertices.keys()].filter((v) => model.valences[v]?.isIrregular).slice(0, MOST_DOTS);
+    const isNamed = model.vertexCount > MOST_NAMES && irregular.length <= MOST_NAMES;
+    return irregular.map((v) => ({
+      place: model.place(`v${v}`), colour, style: "dot", label: isNamed ? this.vertexLabel(v) : null,
+    }));
   }
 
   // The names of the elements that are seen.
@@ -217,9 +247,9 @@ export class View {
     const { model, names } = this;
     const kinds = { vertex: model.vertexCount, edge: model.edges.size, face: model.faceCount };
     const labels = [];
-    const add = (text, at) => labels.push({ text, at });
-    if (names.vertex && kinds.vertex <= MOST_NAMES) {
-      model.vertices.forEach((vertex, v) => vertex && add(`v${v}`, vertex));
+    const add = (text, at) => labels.push({ text: text + this.suffix, at });
+    if ((names.vertex || names.valence) && kinds.vertex <= MOST_NAMES) {
+      model.vertices.forEach((vertex, v) => vertex && labels.push({ text: this.vertexLabel(v), key: v, at: vertex }));
     }
     if (names.edge && kinds.edge <= MOST_NAMES) {
       for (const { name, ends } of model.edges.values()) {
@@ -238,16 +268,19 @@ export class View {
     const [ink, paper] = ["--ink", "--paper"].map((name) => style.getPropertyValue(name).trim());
     const drawn = [];
     const texts = new Set();
-    for (const { text, at, isStrong } of labels) {
+    for (const { text, key = text, at, isStrong, isThin, others = [] } of labels) {
       const point = this.project(at);
-      if (texts.has(text) || (!isStrong && !this.isSeen(point))) continue;
-      pen.font = `${isStrong ? "bold 15px" : "13px"} system-ui, sans-serif`;
+      if (texts.has(key) || (!isStrong && !this.isSeen(point))) continue;
+      pen.font = `${isThin ? "italic 13px" : isStrong ? "bold 15px" : "13px"} system-ui, sans-serif`;
       const wide = pen.measureText(text).width + 6;
-      const [x, y] = [point[0] - wide / 2, point[1] - (text.startsWith("f") ? 9 : 24)];
-      const covers = (other) => x < other[2] && x + wide > other[0] && y < other[3] && y + 18 > other[1];
-      if (drawn.some(covers) || x < 0 || y < 0 || x + wide > this.size[0] || y + 18 > this.size[1]) continue;
+      const corner = ([left, top]) => [left - wide / 2, top - (isThin || text.startsWith("f") ? 9 : 24)];
+      const hasRoom = ([x, y]) => x >= 0 && y >= 0 && x + wide <= this.size[0] && y + 18 <= this.size[1] &&
+        !drawn.some((other) => x < other[2] && x + wide > other[0] && y < other[3] && y + 18 > other[1]);
+      const found = [point, ...others.map((other) => this.project(other))].map(corner).find(hasRoom);
+      if (!found) continue;
+      const [x, y] = found;
       drawn.push([x, y, x + wide, y + 18]);
-      texts.add(text);
+      texts.add(key);
       pen.globalAlpha = isStrong ? 0.95 : 0.75;
       pen.fillStyle = paper;
       pen.beginPath();
@@ -355,7 +388,44 @@ export class View {
     });
   }
 
+  // Turns the mesh so that a place can be seen, if the mesh hides it and the reader does not turn the mesh.
+  turnTo({ at }) {
+    const { model } = this;
+    if (this.isTurning || !model) return;
+    const now = unit(this.turn.slice(6));
+    const eye = (way) => plus(this.centre, scale(way, EYE * this.radius));
+    if (model.isFree(at, eye(now))) return;
+    const normal = unit(model.normalAt(at));
+    const outwards = unit(minus(at, this.centre));
+    const ways = [normal, outwards, scale(normal, -1), scale(outwards, -1), [0, 0, 1], [0, 1, 0], [1, 0, 0]];
+    // Aslant the form is seen better than from the front.
+    const all = ways.filter((way) => length(way) > 0.5).flatMap((way) => [between(now, way, ASLANT), way]);
+    const found = all.find((way) => model.isFree(at, eye(way)));
+    if (found) this.turnSoftly(unit(this.turned(found)));
+  }
+
+  // Turns the mesh until a direction of the screen points to the reader.
+  turnSoftly(way) {
+    const angle = Math.acos(Math.max(-1, Math.min(1, way[2])));
+    const axis = Math.hypot(way[0], way[1]) > 1e-6 ? unit([way[1], -way[0], 0]) : [0, 1, 0];
+    const [from, begun] = [this.turn, performance.now()];
+    const turning = {};
+    const isAtOnce = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const step = (time) => {
+      if (this.turning !== turning) return;
+      const part = isAtOnce ? 1 : Math.min(1, Math.max(0, time - begun) / TURN_MS);
+      this.turn = multiply(about(axis, angle * part * part * (3 - 2 * part)), from);
+      this.shades = null;
+      if (part < 1) requestAnimationFrame(step);
+      else this.turning = null;
+      this.draw();
+    };
+    this.turning = turning;
+    step(begun);
+  }
+
   turnBy(aside, down) {
+    this.turning = null;
     this.turn = multiply(rotation(aside, down), this.turn);
     this.shades = null;
   }
@@ -371,16 +441,37 @@ function rotation(aside, down) {
   return [c, 0, s, t * s, d, -t * c, -d * s, t, d * c];
 }
 
+// A rotation about an axis of length 1 (Rodrigues, 1840).
+function about([x, y, z], angle) {
+  const [s, c] = [Math.sin(angle), Math.cos(angle)];
+  const d = 1 - c;
+  return [c + x * x * d, x * y * d - z * s, x * z * d + y * s, y * x * d + z * s, c + y * y * d, y * z * d - x * s,
+    z * x * d - y * s, z * y * d + x * s, c + z * z * d];
+}
+
+// The direction on the way from one to another one that is an angle before the other one.
+function between(from, to, rest) {
+  const angle = Math.acos(Math.max(-1, Math.min(1, dot(from, to))));
+  if (angle <= rest) return from;
+  const aside = unit(minus(from, scale(to, dot(from, to))));
+  return plus(scale(to, Math.cos(rest)), scale(aside, Math.sin(rest)));
+}
+
 function multiply(a, b) {
   const entry = (i) => [0, 1, 2].reduce((sum, k) => sum + a[3 * Math.floor(i / 3) + k] * b[3 * k + (i % 3)], 0);
   return Array.from({ length: 9 }, (_, i) => entry(i));
 }
 
-function arrowHead(pen, from, to) {
+// The label of a thin arrow: it may stand at other points of the arrow.
+function thinLabel({ points }) {
+  return { isThin: true, others: [0.35, 0.65, 0.85, 0.15, 1.05].map((part) => mix(points[0], points[1], part)) };
+}
+
+function arrowHead(pen, from, to, long) {
   const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
   pen.beginPath();
   pen.moveTo(to[0], to[1]);
-  for (const turn of [2.6, -2.6]) pen.lineTo(to[0] + 14 * Math.cos(angle + turn), to[1] + 14 * Math.sin(angle + turn));
+  for (const turn of [2.6, -2.6]) pen.lineTo(to[0] + long * Math.cos(angle + turn), to[1] + long * Math.sin(angle + turn));
   pen.closePath();
   pen.fill();
 }
