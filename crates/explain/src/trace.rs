@@ -243,12 +243,32 @@ impl Recorder<'_> {
     }
 
     fn explain(&mut self, accesses: Vec<Access>) {
-        for i in 0..accesses.len() {
-            if let Some(table) = self.inference.table(&accesses[i]) {
-                let (reason, line) = self.inference.read(table, &accesses[i..]);
-                self.push_read(table, &accesses[i], reason, line);
-                self.reads.push(accesses[i]);
+        let mut i = 0;
+        while i < accesses.len() {
+            let Some(table) = self.inference.table(&accesses[i]) else {
+                i += 1;
+                continue;
+            };
+            let (reason, line) = self.inference.read(table, &accesses[i..]);
+            self.push_read(table, &accesses[i], reason, line);
+            self.reads.push(accesses[i]);
+            i += 1;
+            // The rows of a scan have the same reason.
+            let rows = self.inference.scan_length(&accesses[i..]);
+            if rows > 0 {
+                self.inference.scan_on(table, rows);
+                self.push_rows(rows);
+                self.reads.extend(&accesses[i..i + rows]);
+                i += rows;
             }
+        }
+    }
+
+    /// Adds rows to the last step, which is a read of a scan.
+    fn push_rows(&mut self, rows: usize) {
+        if let Some(Step::Read(last)) = self.steps.last_mut() {
+            last.rows += rows;
+            last.fields.clear();
         }
     }
 
