@@ -183,6 +183,7 @@ impl<'m> Inference<'m> {
         {
             self.line = lines[count % lines.len()];
         }
+        self.known.begin_scan(&self.tables, rows);
         for row in last + 1..=last + rows {
             self.time += 1;
             let name = RowName {
@@ -197,11 +198,19 @@ impl<'m> Inference<'m> {
 
     /// Learns the name of a row of `table` that is read, and the names in the row except `whole`.
     fn learn_row(&mut self, table: RecordTable, name: RowName, whole: Option<RowName>) {
-        self.learn(name, Source::Same, whole);
-        let fields = self.mesh.own_fields(table.name, name.row as usize);
         let number = self.tables.iter().position(|one| one.name == table.name);
-        for (column, field) in fields.unwrap_or_default().into_iter().enumerate() {
-            if let (Field::Row(to), Some(table)) = (field, number)
+        let fields = self.mesh.own_fields(table.name, name.row as usize);
+        let fields = fields.unwrap_or_default();
+        self.known.add(name, Source::Same, self.time);
+        for place in 0..self.deriving.len() {
+            match self.deriving[place] {
+                same if Some(same) == number => self.learn_derived(same, name, &fields, whole),
+                other => self.learn_derived_of(other, name, whole),
+            }
+        }
+        let Some(table) = number else { return };
+        for (column, &field) in fields.iter().enumerate() {
+            if let Field::Row(to) = field
                 && !self.tables[table].columns[column].is_derived
             {
                 let of = name.row;
@@ -215,26 +224,38 @@ impl<'m> Inference<'m> {
     fn learn(&mut self, name: RowName, source: Source, whole: Option<RowName>) {
         self.known.add(name, source, self.time);
         for place in 0..self.deriving.len() {
-            let table = self.deriving[place];
-            let RecordTable {
-                letter,
-                name: table_name,
-                columns,
-                ..
-            } = self.tables[table];
-            if letter != name.letter {
-                continue;
-            }
+            self.learn_derived_of(self.deriving[place], name, whole);
+        }
+    }
+
+    /// Adds ways to the rows that derived fields of a row in a table name, if the table has such rows.
+    fn learn_derived_of(&mut self, table: usize, name: RowName, whole: Option<RowName>) {
+        let RecordTable {
+            letter,
+            name: table_name,
+            ..
+        } = self.tables[table];
+        if letter == name.letter {
             let fields = self.mesh.own_fields(table_name, name.row as usize);
-            for (column, field) in fields.unwrap_or_default().into_iter().enumerate() {
-                if let Field::Row(to) = field
-                    && columns[column].is_derived
-                    && whole != Some(to)
-                {
-                    let of = name.row;
-                    let source = Source::Field { table, column, of };
-                    self.known.add(to, source, self.time);
-                }
+            self.learn_derived(table, name, &fields.unwrap_or_default(), whole);
+        }
+    }
+
+    fn learn_derived(
+        &mut self,
+        table: usize,
+        name: RowName,
+        fields: &[Field],
+        whole: Option<RowName>,
+    ) {
+        for (column, &field) in fields.iter().enumerate() {
+            if let Field::Row(to) = field
+                && self.tables[table].columns[column].is_derived
+                && whole != Some(to)
+            {
+                let of = name.row;
+                let source = Source::Field { table, column, of };
+                self.known.add(to, source, self.time);
             }
         }
     }

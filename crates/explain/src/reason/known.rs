@@ -1,5 +1,7 @@
 //! The ways to rows that a query has found so far. A scan finds one or more for each row of a table, so adding one is fast.
 
+use std::num::NonZero;
+
 use rustc_hash::FxHashMap;
 use sixfold_core::{Line, RecordTable, RowName};
 
@@ -94,11 +96,38 @@ impl From<Source> for Packed {
 pub(super) struct Known {
     /// The rows that the query names.
     asked: Vec<RowName>,
-    /// The letters of rows; their numbers are in the keys of `latest`.
-    letters: Vec<&'static str>,
-    /// The latest link, by the letter and the number of a row.
-    latest: FxHashMap<u64, u32>,
+    /// For each letter of rows their latest links.
+    latest: Vec<(&'static str, Latest)>,
     links: Vec<Link>,
+}
+
+/// The latest links of the rows with one letter.
+#[derive(Debug, Default)]
+struct Latest {
+    /// Of the rows that are not in `in_order`.
+    by_row: FxHashMap<u32, u32>,
+    /// Of the first rows, in their order, if a scan finds ways to most of them.
+    in_order: Vec<Option<NonZero<u32>>>,
+}
+
+impl Latest {
+    fn get(&self, row: u32) -> Option<u32> {
+        match self.in_order.get(row as usize) {
+            Some(number) => number.map(|number| number.get() - 1),
+            None => self.by_row.get(&row).copied(),
+        }
+    }
+
+    /// Returns the number before.
+    fn replace(&mut self, row: u32, number: u32) -> Option<u32> {
+        match self.in_order.get_mut(row as usize) {
+            Some(place) => {
+                let before = std::mem::replace(place, NonZero::new(number + 1));
+                before.map(|number| number.get() - 1)
+            }
+            None => self.by_row.insert(row, number),
+        }
+    }
 }
 
 impl Known {
@@ -106,26 +135,43 @@ impl Known {
     pub(super) fn new(asked: Vec<RowName>) -> Self {
         Self {
             asked,
-            letters: Vec::new(),
-            latest: FxHashMap::default(),
+            latest: Vec::new(),
             links: Vec::new(),
         }
     }
 
-    fn key(&mut self, name: RowName) -> u64 {
-        let letter = (self.letters.iter()).position(|&letter| letter == name.letter);
-        let letter = letter.unwrap_or_else(|| {
-            self.letters.push(name.letter);
-            self.letters.len() - 1
+    fn latest(&mut self, letter: &'static str) -> &mut Latest {
+        let place = self.latest.iter().position(|(known, _)| *known == letter);
+        let place = place.unwrap_or_else(|| {
+            self.latest.push((letter, Latest::default()));
+            self.latest.len() - 1
         });
-        (letter as u64) << 32 | u64::from(name.row)
+        &mut self.latest[place].1
+    }
+
+    /// Makes adding ways fast for the rows of tables that a scan reads, or that it finds in their fields. O(rows) for the
+    /// first scan.
+    pub(super) fn begin_scan(&mut self, tables: &[RecordTable], rows: usize) {
+        self.links.reserve(3 * rows);
+        for table in tables {
+            let latest = self.latest(table.letter);
+            if latest.in_order.len() < table.rows {
+                latest.in_order.resize(table.rows, None);
+                let known = std::mem::take(&mut latest.by_row);
+                let mut known: Vec<(u32, u32)> = known.into_iter().collect();
+                known.sort_unstable();
+                for (row, number) in known {
+                    latest.replace(row, number);
+                }
+            }
+        }
     }
 
     /// Adds a way to a row. O(1).
     pub(super) fn add(&mut self, name: RowName, source: Source, time: usize) {
-        let (key, source, time) = (self.key(name), Packed::from(source), time as u32);
+        let (source, time) = (Packed::from(source), time as u32);
         let number = self.links.len() as u32;
-        let before = self.latest.insert(key, number);
+        let before = self.latest(name.letter).replace(name.row, number);
         self.links.push(Link {
             before,
             time,
@@ -137,8 +183,7 @@ impl Known {
     ///
     /// O([`add`](Self::add)s to this row since the last call for it).
     pub(super) fn ways(&mut self, name: RowName, tables: &[RecordTable]) -> Vec<Way> {
-        let key = self.key(name);
-        let mut next = self.latest.get(&key).copied();
+        let mut next = self.latest(name.letter).get(name.row);
         let mut kept: Vec<u32> = Vec::new();
         while let Some(number) = next.filter(|_| kept.len() < MOST_WAYS) {
             let Link { before, source, .. } = self.links[number as usize];
