@@ -10,6 +10,7 @@ use sixfold_core::{Described, EditByName, ElementName, VertexId};
 
 use crate::edit::EditTrace;
 use crate::error::ExplainError;
+use crate::memory::Memory;
 use crate::named_mesh::NamedMesh;
 use crate::records::{Records, RowsOf, records, row_name};
 use crate::trace::{Query, Trace, trace};
@@ -166,6 +167,11 @@ impl BuiltMesh {
         })
     }
 
+    /// Returns the bytes of the tables as they were before edits.
+    pub fn memory(&self) -> Memory {
+        self.shown().memory()
+    }
+
     /// Returns the vertices and faces by the numbers of their names. O(corners).
     pub fn geometry(&self) -> Geometry {
         self.shown().geometry()
@@ -206,6 +212,7 @@ trait Shown {
     fn trace(&self, relation: Relation, element: ElementName) -> Result<Trace, ExplainError>;
     fn walk(&self, walk: &str, expected: Option<Query>) -> Result<Walk, ExplainError>;
     fn geometry(&self) -> Geometry;
+    fn memory(&self) -> Memory;
 }
 
 /// The edits of a mesh of any editable type.
@@ -252,6 +259,12 @@ impl<P: Described> Shown for NamedMesh<P> {
         };
         self.probe.take();
         geometry
+    }
+
+    fn memory(&self) -> Memory {
+        let memory = Memory::new(self.structure, &self.memory, &self.mesh.tables());
+        self.probe.take();
+        memory
     }
 }
 

@@ -4,6 +4,7 @@ mod kept;
 mod refinement;
 mod response;
 mod source;
+mod welding;
 
 use std::fmt::{self, Display};
 
@@ -23,6 +24,7 @@ use kept::{EditedMesh, Kept};
 use refinement::{levels, stencil};
 use response::{Answer, Content, Found, Response, Verdict};
 use source::{MeshSource, SHOWN, Sourced};
+use welding::welded;
 
 /// Maximum number of places that a response lists for each kind of fault.
 const MOST_PLACES: usize = 1_000;
@@ -93,9 +95,13 @@ enum Ask {
         relation: Relation,
         queries: u32,
     },
+    Memory,
     Facts,
     Verdicts,
     Repair,
+    Weld {
+        tolerance: f64,
+    },
     Subdivide {
         scheme: String,
         levels: u32,
@@ -154,9 +160,11 @@ struct Query {
 /// | `{"walk": {"walk": "…", "expect": {"relation": …, "element": …}}}` | a [`Walk`](crate::Walk) |
 /// | `"geometry"` | for each structure the [`Geometry`] after the edits |
 /// | `{"sweep": {"relation": "vertex_faces", "queries": 1000}}` | for each structure the number of `results` of so many queries, from one element to the next and from the first again after the last; for pages that measure the time. At most 10,000,000 queries |
+/// | `"memory"` | for each structure the [`Memory`](crate::Memory): the bytes of the mesh, each table with its rows and the bytes of a row, and the formula |
 /// | `"facts"` | `{"facts": …}`: [`Facts`] of the mesh |
 /// | `"verdicts"` | `{"verdicts": …, "faults": …}`: which structures hold the mesh, and all kinds of faults with the number of places and the first 1,000 |
-/// | `"repair"` | for each structure the steps, and the repaired mesh |
+/// | `"repair"` | for each structure the steps, and the repaired mesh. A step has its `counts`, and in `left` a sentence for each place that it could not repair |
+/// | `{"weld": {"tolerance": 0.01}}` | `{"weld": {"corners": 24, "vertices": 8, "map": [0, 1, …], …}}`: the corners of all faces as a polygon soup stores them, one after the other, and the vertices that they become if corners within a distance are merged; 0 merges equal positions. `map` has the vertex of each of the first 2,000 corners; vertices have numbers in the order of their first corners. `faces_changed` counts the faces that then have fewer corners or are lost, and `largest_shift` is the largest distance of a corner from its vertex |
 /// | `{"subdivide": {"scheme": "loop", "levels": 2}}` | `{"levels": …}`: the mesh before the first step, and after each step |
 /// | `{"stencil": {"scheme": "loop", "level": 1, "point": 8}}` | `{"parents": …}`: the points of the level before with their weights, without those below 10⁻⁷ |
 ///
@@ -165,11 +173,13 @@ struct Query {
 /// # Response
 ///
 /// `{"answers": […], "refused": […]}` if structures answer. A structure that cannot hold the mesh, does
-/// not have the element, or refuses one of `edits`, is in `refused` with its reason. `{"error": "…"}`
-/// for a request that is wrong. `notes` lists what reading the mesh left out or changed.
+/// not have the element, or refuses one of `edits`, is in `refused` with its reason. `holding_triangles` lists
+/// those of the refusing structures that hold the mesh if its polygons are cut into triangles (`triangulate`);
+/// the field is missing if there are none. `{"error": "…"}` for a request that is wrong. `notes` lists what
+/// reading the mesh left out or changed.
 ///
-/// Facts, verdicts, repairs and subdivision are those of the mesh without edits: send the geometry after
-/// the edits as polygons. A mesh has at most 400,000 corners, also after a subdivision step; there are at
+/// Memory, facts, verdicts, repairs, welding and subdivision are those of the mesh without edits: send the
+/// geometry after the edits as polygons. A mesh has at most 400,000 corners, also after a subdivision step; there are at
 /// most 16 levels, and weights in meshes of at most 20,000 vertices.
 pub fn respond(request: &str) -> String {
     Engine::new().respond(request)
@@ -303,6 +313,10 @@ impl Request {
             Ask::Geometry => subject.geometry(),
             _ if !self.edits.is_empty() => return Err(AFTER_EDITS.into()),
             Ask::Sweep { relation, queries } => subject.sweep(*relation, *queries)?,
+            Ask::Memory => subject.memory(),
+            Ask::Weld { tolerance } => Content::Weld {
+                weld: welded(subject.polygons(), *tolerance)?,
+            },
             Ask::Facts => Content::Facts {
                 facts: Facts::from_polygons(subject.polygons()),
             },
@@ -478,6 +492,11 @@ impl Subject<'_> {
                 geometry: edited.mesh().geometry(),
             })
         })
+    }
+
+    /// Returns the bytes of the tables of each structure.
+    fn memory(&mut self) -> Content {
+        self.each_built(|_, edited| Ok(Answer::Memory(edited.mesh().memory())))
     }
 
     /// Returns which structures hold the mesh, and all faults of the mesh.

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use sixfold::{PolygonMesh, Representation};
 use sixfold_core::{
-    Described, Element, ElementName, ElementNames, Field, Measured, RecordTable, RowName, Traced,
+    Described, Element, ElementName, ElementNames, Field, Measured, MemoryFootprint, RecordTable,
+    RowName, Traced,
 };
 
 use crate::error::ExplainError;
@@ -16,6 +17,8 @@ pub(crate) struct NamedMesh<P: Described> {
     pub(crate) structure: &'static str,
     pub(crate) mesh: P,
     pub(crate) probe: Traced,
+    /// The tables before edits.
+    pub(crate) memory: MemoryFootprint,
     /// The bytes of a row, by the name of the table.
     pub(crate) row_bytes: HashMap<String, usize>,
     pub(crate) names: ElementNames<P::Vertex, P::Face>,
@@ -62,14 +65,16 @@ where
         room: M::Probed::<Traced>::no_room(&refusal),
         refusal,
     })?;
-    let tables = mesh.memory().tables.into_iter();
-    let row_bytes = tables.map(|table| (table.table.into_owned(), table.row_bytes));
+    let memory = mesh.memory();
+    let tables = memory.tables.iter();
+    let row_bytes = tables.map(|table| (table.table.to_string(), table.row_bytes));
     let row_bytes = row_bytes.collect();
     let probe = Traced::default();
     Ok(NamedMesh {
         structure: M::NAME,
         mesh: mesh.probed(probe.clone()),
         probe,
+        memory,
         row_bytes,
         names: ElementNames::new::<M>(polygons),
         has_moved: false,

@@ -5,20 +5,18 @@
 //! ([`Described::record`](sixfold_core::Described::record)) has the names, and the steps of the query ([`Described::algorithm`](sixfold_core::Described::algorithm)) decide
 //! between several reasons.
 
+mod known;
+
 use std::collections::{HashMap, HashSet};
 
-use rustc_hash::FxHashMap;
 use serde::Serialize;
-use sixfold_core::{Access, Column, Field, Line, RecordTable, RowName};
-use smallvec::SmallVec;
+use sixfold_core::{Access, Field, Line, RecordTable, RowName};
 
 use crate::named_mesh::RecordSource;
+use known::{Known, Source};
 
 /// Number of rows in order that are a scan, not the corners of one face.
 const SCANNED_ROWS: usize = 16;
-
-/// Maximum number of reasons that are kept for each row: the latest ones.
-const KEPT_REASONS: usize = 6;
 
 /// The way of a row for which no reason is found.
 const UNKNOWN: &str = "unknown";
@@ -62,9 +60,10 @@ impl Way {
 pub(crate) struct Inference<'m> {
     mesh: &'m dyn RecordSource,
     tables: Vec<RecordTable>,
+    /// The numbers of the tables with derived columns.
+    deriving: Vec<usize>,
     lines: &'static [Line],
-    /// A scan has one way to each of its rows.
-    known: FxHashMap<RowName, SmallVec<[Way; 1]>>,
+    known: Known,
     /// The rows of the element of the query.
     asked: HashSet<RowName>,
     /// The number of reads.
@@ -84,11 +83,17 @@ impl<'m> Inference<'m> {
         lines: &'static [Line],
         asked: Vec<RowName>,
     ) -> Self {
+        let tables = mesh.record_tables();
+        let derives = |table: &usize| {
+            let mut columns = tables[*table].columns.iter();
+            columns.any(|column| column.is_derived)
+        };
         let mut inference = Self {
             mesh,
-            tables: mesh.record_tables(),
+            deriving: (0..tables.len()).filter(derives).collect(),
+            known: Known::new(asked.clone()),
+            tables,
             lines,
-            known: FxHashMap::default(),
             asked: asked.iter().copied().collect(),
             time: 0,
             line: None,
@@ -97,7 +102,7 @@ impl<'m> Inference<'m> {
             is_scanning: false,
         };
         for name in asked {
-            inference.learn(name, Line::ASKED, None, None);
+            inference.learn(name, Source::Asked, None);
         }
         inference
     }
@@ -142,74 +147,125 @@ impl<'m> Inference<'m> {
         if whole.is_some() && way.name == Line::ASKED {
             self.asked.insert(name);
         }
-        self.learn(name, Line::SAME, None, whole);
-        let fields = self.mesh.own_fields(table.name, row).unwrap_or_default();
-        for (column, field) in table.columns.iter().zip(fields) {
-            if let Field::Row(to) = field
-                && !column.is_derived
-            {
-                self.learn(to, column.name, Some(name), whole);
+        self.learn_row(table, name, whole);
+        (self.reason(way, table), line)
+    }
+
+    /// Returns how many of `accesses`, which follow the last read, go on with its scan: 0 if it was not a scan.
+    pub(crate) fn scan_length(&self, accesses: &[Access]) -> usize {
+        let Some((table, row)) = self.last.filter(|_| self.is_scanning) else {
+            return 0;
+        };
+        let in_order = accesses.iter().zip(row + 1..);
+        let in_order =
+            in_order.take_while(|(access, row)| access.row == *row && access.table == table);
+        in_order.count()
+    }
+
+    /// Reads the next `rows` rows of a scan of `table`. The same as [`read`](Self::read) for each of them: their reason is
+    /// that of the last row.
+    pub(crate) fn scan_on(&mut self, table: RecordTable, rows: usize) {
+        let Some((_, last)) = self.last else {
+            return;
+        };
+        // If several lines scan the table, the rows go to these lines in turn.
+        let mut lines = Vec::new();
+        let mut line = self.line;
+        loop {
+            line = self.line_after(line, table, Line::SCAN);
+            if line.is_none() || lines.first() == Some(&line) || lines.len() == rows {
+                break;
+            }
+            lines.push(line);
+        }
+        if let Some(count) = rows.checked_sub(1)
+            && !lines.is_empty()
+        {
+            self.line = lines[count % lines.len()];
+        }
+        self.known.begin_scan(&self.tables, rows);
+        for row in last + 1..=last + rows {
+            self.time += 1;
+            let name = RowName {
+                letter: table.letter,
+                row: row as u32,
+            };
+            self.learn_row(table, name, None);
+        }
+        self.last = Some((table.name, last + rows));
+        self.scanned.insert(table.name, last + rows + 1);
+    }
+
+    /// Learns the name of a row of `table` that is read, and the names in the row except `whole`.
+    fn learn_row(&mut self, table: RecordTable, name: RowName, whole: Option<RowName>) {
+        let number = self.tables.iter().position(|one| one.name == table.name);
+        let fields = self.mesh.own_fields(table.name, name.row as usize);
+        let fields = fields.unwrap_or_default();
+        self.known.add(name, Source::Same, self.time);
+        for place in 0..self.deriving.len() {
+            match self.deriving[place] {
+                same if Some(same) == number => self.learn_derived(same, name, &fields, whole),
+                other => self.learn_derived_of(other, name, whole),
             }
         }
-        (self.reason(way, table), line)
+        let Some(table) = number else { return };
+        for (column, &field) in fields.iter().enumerate() {
+            if let Field::Row(to) = field
+                && !self.tables[table].columns[column].is_derived
+            {
+                let of = name.row;
+                self.learn(to, Source::Field { table, column, of }, whole);
+            }
+        }
     }
 
     /// Adds a way to a row, and to the rows that fields of this row name without a read, except to
     /// `whole`.
-    fn learn(
-        &mut self,
-        name: RowName,
-        way: &'static str,
-        of: Option<RowName>,
-        whole: Option<RowName>,
-    ) {
-        self.add(name, way, of);
-        for place in 0..self.tables.len() {
-            let table = self.tables[place];
-            let is_derived = |column: &Column| column.is_derived;
-            if table.letter != name.letter || !table.columns.iter().any(is_derived) {
-                continue;
-            }
-            let fields = self
-                .mesh
-                .own_fields(table.name, name.row as usize)
-                .unwrap_or_default();
-            for (column, field) in table.columns.iter().zip(fields) {
-                if let Field::Row(to) = field
-                    && column.is_derived
-                    && whole != Some(to)
-                {
-                    self.add(to, column.name, Some(name));
-                }
-            }
+    fn learn(&mut self, name: RowName, source: Source, whole: Option<RowName>) {
+        self.known.add(name, source, self.time);
+        for place in 0..self.deriving.len() {
+            self.learn_derived_of(self.deriving[place], name, whole);
         }
     }
 
-    fn add(&mut self, name: RowName, way: &'static str, of: Option<RowName>) {
-        let ways = self.known.entry(name).or_default();
-        ways.retain(|known| known.name != way || known.of != of);
-        if ways.len() == KEPT_REASONS {
-            let oldest = ways.iter().position(|way| way.name != Line::ASKED);
-            ways.remove(oldest.unwrap_or(0));
+    /// Adds ways to the rows that derived fields of a row in a table name, if the table has such rows.
+    fn learn_derived_of(&mut self, table: usize, name: RowName, whole: Option<RowName>) {
+        let RecordTable {
+            letter,
+            name: table_name,
+            ..
+        } = self.tables[table];
+        if letter == name.letter {
+            let fields = self.mesh.own_fields(table_name, name.row as usize);
+            self.learn_derived(table, name, &fields.unwrap_or_default(), whole);
         }
-        ways.push(Way {
-            name: way,
-            of,
-            time: self.time,
-            is_part: false,
-        });
+    }
+
+    fn learn_derived(
+        &mut self,
+        table: usize,
+        name: RowName,
+        fields: &[Field],
+        whole: Option<RowName>,
+    ) {
+        for (column, &field) in fields.iter().enumerate() {
+            if let Field::Row(to) = field
+                && self.tables[table].columns[column].is_derived
+                && whole != Some(to)
+            {
+                let of = name.row;
+                let source = Source::Field { table, column, of };
+                self.known.add(to, source, self.time);
+            }
+        }
     }
 
     /// Returns the ways to a row, the latest first.
-    fn ways(&self, table: RecordTable, name: RowName) -> Vec<Way> {
-        let known = self.known.get(&name);
-        let mut ways = known.map(|known| known.to_vec()).unwrap_or_default();
+    fn ways(&mut self, table: RecordTable, name: RowName) -> Vec<Way> {
+        let mut ways = self.known.ways(name, &self.tables);
+        let is_known = !ways.is_empty();
         // The row is a part of a known element, such as a corner of f3.
-        for same in self
-            .tables
-            .iter()
-            .filter(|same| same.letter == table.letter)
-        {
+        for same in (self.tables.iter()).filter(|same| same.letter == table.letter) {
             let fields = self
                 .mesh
                 .own_fields(same.name, name.row as usize)
@@ -219,8 +275,8 @@ impl<'m> Inference<'m> {
                     && column.is_derived
                     && of.letter != table.letter
                 {
-                    let known = self.known.get(&of).into_iter().flatten();
-                    ways.extend(known.map(|known| Way {
+                    let known = self.known.ways(of, &self.tables);
+                    ways.extend(known.iter().map(|known| Way {
                         name: match known.name {
                             Line::ASKED => Line::ASKED,
                             _ => column.name,
@@ -250,7 +306,7 @@ impl<'m> Inference<'m> {
                 ..Way::plain(Line::NEXT_ROW)
             });
         }
-        if self.known.contains_key(&name) {
+        if is_known {
             ways.push(Way::plain(Line::SAME));
         }
         ways.push(Way::plain(Line::SEARCH));
@@ -258,7 +314,12 @@ impl<'m> Inference<'m> {
     }
 
     /// Returns the way of a read, and its line.
-    fn way(&self, table: RecordTable, name: RowName, accesses: &[Access]) -> (Way, Option<usize>) {
+    fn way(
+        &mut self,
+        table: RecordTable,
+        name: RowName,
+        accesses: &[Access],
+    ) -> (Way, Option<usize>) {
         let scan = self.distance(table, Line::SCAN);
         let scan = scan.map(|line| (Way::plain(Line::SCAN), line));
         let previous = (name.row as usize).checked_sub(1);
@@ -318,6 +379,13 @@ impl<'m> Inference<'m> {
             let line = self.lines[self.after(distance)];
             line.reads.contains(&(table.name, way))
         })
+    }
+
+    /// Returns the next line after `line` that reads `table` in this way.
+    fn line_after(&self, line: Option<usize>, table: RecordTable, way: &str) -> Option<usize> {
+        let from = line.map_or(0, |line| line + 1);
+        let mut lines = (from..self.lines.len()).chain(0..from.min(self.lines.len()));
+        lines.find(|&line| self.lines[line].reads.contains(&(table.name, way)))
     }
 
     /// Returns the line that is `distance` lines after the current line, from the first line again

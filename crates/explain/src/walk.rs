@@ -4,15 +4,13 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use serde::Serialize;
 use sixfold::{Relation, UnknownName};
-use sixfold_core::{
-    Access, AccessKind, Column, Described, ElementName, Field, RecordTable, RowName, Traced, Word,
-};
+use sixfold_core::{Column, Described, ElementName, Field, RecordTable, RowName, Traced, Word};
 
 use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::Reason;
 use crate::records::row_name;
-use crate::trace::{Cost, Query, Read, Step, cost, moved_among, stored_fields, trace};
+use crate::trace::{Cost, Query, Read, RowReads, Step, cost, moved_among, stored_fields, trace};
 use crate::walk_parser::{Kind, Program, Statement, Value, loop_variable, parse, text};
 
 /// A walk on one structure: what it reads, and what it yields.
@@ -195,7 +193,7 @@ struct Walker<'m> {
     /// The values of the variables; `None` for none.
     variables: BTreeMap<String, Option<RowName>>,
     steps: Vec<Step>,
-    reads: Vec<Access>,
+    reads: Vec<RowReads>,
     results: Vec<String>,
     /// The current line.
     line: usize,
@@ -380,15 +378,14 @@ impl Walker<'_> {
     ) {
         // A program that has just read a row still has all of its fields.
         if let Some(last) = self.reads.last()
-            && (last.table, last.row) == (table.name, row)
+            && (last.table, last.rows.start) == (table.name, row)
         {
             return;
         }
         let bytes = self.row_bytes.get(table.name).copied().unwrap_or(0);
-        self.reads.push(Access {
-            kind: AccessKind::Read,
+        self.reads.push(RowReads {
             table: table.name,
-            row,
+            rows: row..row + 1,
             bytes,
         });
         self.steps.push(Step::Read(Read {

@@ -1,12 +1,21 @@
 //! Observation of the reads and writes of queries and edits.
 
 use std::fmt::Debug;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// An observer of the reads and writes of a [`Table`](crate::Table).
 pub trait Probe: Clone + Debug + Send + Sync {
     /// Records that `bytes` bytes of row `row` of `table` are read.
     fn read(&self, table: &'static str, row: usize, bytes: usize);
+
+    /// Records that `bytes` bytes of each of the rows `rows` of `table` are read, in order.
+    #[inline(always)]
+    fn read_rows(&self, table: &'static str, rows: Range<usize>, bytes: usize) {
+        for row in rows {
+            self.read(table, row, bytes);
+        }
+    }
 
     /// Records that `bytes` bytes of row `row` of `table` are written.
     fn write(&self, table: &'static str, row: usize, bytes: usize);
@@ -19,6 +28,9 @@ pub struct Untraced;
 impl Probe for Untraced {
     #[inline(always)]
     fn read(&self, _: &'static str, _: usize, _: usize) {}
+
+    #[inline(always)]
+    fn read_rows(&self, _: &'static str, _: Range<usize>, _: usize) {}
 
     #[inline(always)]
     fn write(&self, _: &'static str, _: usize, _: usize) {}
@@ -106,6 +118,24 @@ impl Probe for Traced {
         });
     }
 
+    /// Locks the log once.
+    fn read_rows(&self, table: &'static str, rows: Range<usize>, bytes: usize) {
+        let mut log = self.log();
+        if log.is_paused {
+            return;
+        }
+        let room = match log.limit {
+            Some(limit) => limit.saturating_sub(log.accesses.len()),
+            None => usize::MAX,
+        };
+        log.accesses.extend(rows.take(room).map(|row| Access {
+            kind: AccessKind::Read,
+            table,
+            row,
+            bytes,
+        }));
+    }
+
     fn write(&self, table: &'static str, row: usize, bytes: usize) {
         let kind = AccessKind::Write;
         self.push(Access {
@@ -129,5 +159,13 @@ mod tests {
         assert_eq!(probe.take().len(), 3);
         read(5);
         assert_eq!(probe.take().len(), 5);
+        probe.limit(3, || {
+            probe.read("faces", 9, 4);
+            probe.read_rows("faces", 0..5, 4);
+        });
+        let rows = probe.take().into_iter().map(|access| access.row);
+        assert!(rows.eq([9, 0, 1]));
+        probe.pause(|| probe.read_rows("faces", 0..5, 4));
+        assert!(probe.take().is_empty());
     }
 }

@@ -96,9 +96,8 @@ impl<T, P: Probe> Table<T, P> {
     /// Panics if the table does not have all rows of `range`.
     #[inline]
     pub fn read_range(&self, range: Range<usize>) -> &[T] {
-        for row in range.clone() {
-            self.probe.read(self.name, row, size_of::<T>());
-        }
+        self.probe
+            .read_rows(self.name, range.clone(), size_of::<T>());
         match self.rows.get(range.clone()) {
             Some(values) => values,
             None => self.no_such_row(range.end.max(range.start + 1) - 1),

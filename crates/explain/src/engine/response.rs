@@ -5,9 +5,11 @@ use sixfold::Facts;
 use sixfold::repair::{FaultKind, Place, Step, StepCounts, StepReport};
 
 use super::refinement::Parent;
+use super::welding::Welded;
 use crate::built_mesh::Geometry;
 use crate::edit::EditTrace;
 use crate::error::Refused;
+use crate::memory::Memory;
 use crate::records::Records;
 use crate::trace::Trace;
 use crate::walk::Walk;
@@ -44,6 +46,9 @@ pub(super) enum Content {
     Stencil {
         parents: Vec<Parent>,
     },
+    Weld {
+        weld: Welded,
+    },
     Error {
         error: String,
     },
@@ -63,6 +68,7 @@ pub(super) enum Answer {
     Trace(Trace),
     Edit(EditTrace),
     Walk(Walk),
+    Memory(Memory),
     Geometry {
         backend: &'static str,
         #[serde(flatten)]

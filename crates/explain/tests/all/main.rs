@@ -3,6 +3,7 @@
 mod edits;
 mod engine;
 mod kept_meshes;
+mod memory_and_welding;
 mod records;
 mod traces;
 mod walks;

@@ -296,8 +296,8 @@ export class Explorer {
   // flip does, the other one is chosen.
   nameEdges(before, chosen) {
     const { model, lastEdit, view } = this;
-    const missing = (one, other) => [...one.edges.keys()].filter((name) => !other.edges.has(name));
-    const [made, deleted] = [missing(model, before), missing(before, model)];
+    const made = model.edges.missingIn(before.edges);
+    const deleted = before.edges.missingIn(model.edges);
     Object.assign(lastEdit, { made, deleted });
     if (made.length === 1 && deleted.length === 1 && deleted[0] === chosen) [view.element] = made;
   }
@@ -430,9 +430,9 @@ function elementLike(model, name, kind = parseName(name)?.kind ?? "vertex") {
   const known = model.has(name) ? parseName(name) : null;
   const touches = (corners) => known?.kind === "face" ? false : known?.numbers.every((v) => corners.includes(v));
   if (kind === "edge" && model.edges.size) {
-    const corners = known?.kind === "face" ? model.faces[known.numbers[0]] : [];
-    const edge = [...model.edges.values()].find(({ ends }) => touches(ends) || ends.every((v) => corners.includes(v)));
-    return (edge ?? model.edges.values().next().value).name;
+    const corners = new Set(known?.kind === "face" ? model.faces[known.numbers[0]] : []);
+    const edge = model.edges.nameWhere((...ends) => touches(ends) || ends.every((v) => corners.has(v)));
+    return edge ?? model.edges.name(0);
   }
   if (kind === "face" && model.faceCount) {
     const face = model.faces.findIndex((corners) => corners && touches(corners));

@@ -9,21 +9,11 @@ export class Model {
   constructor(geometry) {
     this.vertices = geometry.vertices;
     this.faces = geometry.faces;
-    // The edges by their names, the lower number first: each with its ends and its faces.
-    this.edges = new Map();
-    this.vertexCount = this.vertices.filter((vertex) => vertex).length;
-    this.faceCount = 0;
-    this.faces.forEach((face, f) => {
-      if (!face) return;
-      this.faceCount += 1;
-      face.forEach((from, i) => {
-        const to = face[(i + 1) % face.length];
-        const name = edgeName(from, to);
-        const edge = this.edges.get(name);
-        if (edge) edge.faces.push(f);
-        else this.edges.set(name, { name, ends: [Math.min(from, to), Math.max(from, to)], faces: [f] });
-      });
-    });
+    this.vertexCount = this.vertices.reduce((count, vertex) => count + (vertex ? 1 : 0), 0);
+    this.faceCount = this.faces.reduce((count, face) => count + (face ? 1 : 0), 0);
+    this.edges = new Edges(this.faces);
+    // The places of faces that were asked for.
+    this.facePlaces = new Map();
     this.measure();
     this.cover();
   }
@@ -93,7 +83,8 @@ export class Model {
     const triangles = [];
     this.faces.forEach((face, f) => {
       if (!face) return;
-      for (const [a, b, c] of cut(face.map((v) => this.vertices[v]))) triangles.push(face[a], face[b], face[c], f);
+      if (face.length === 3) triangles.push(face[0], face[1], face[2], f);
+      else for (const [a, b, c] of cut(face.map((v) => this.vertices[v]))) triangles.push(face[a], face[b], face[c], f);
     });
     this.triangles = Uint32Array.from(triangles);
   }
@@ -120,14 +111,17 @@ export class Model {
       return at ? { kind: "vertex", points: [at], at } : null;
     }
     if (parsed.kind === "edge") {
-      if (!this.edges.has(edgeName(a, b))) return null;
+      if (this.edges.find(a, b) < 0) return null;
       const points = [this.vertices[a], this.vertices[b]];
       return { kind: "edge", points, at: mix(...points, 0.5) };
     }
     const face = this.faces[a];
     if (!face) return null;
-    const points = face.map((v) => this.vertices[v]);
-    return { kind: "face", points, at: average(points) };
+    if (!this.facePlaces.has(a)) {
+      const points = face.map((v) => this.vertices[v]);
+      this.facePlaces.set(a, { kind: "face", points, at: average(points) });
+    }
+    return this.facePlaces.get(a);
   }
 
   // Whether no face is between a point of the mesh and an eye. The faces at the point are not between.
@@ -178,6 +172,116 @@ export class Model {
     if (!a || !b) return null;
     const points = [mix(a, b, 0.12), mix(a, b, 0.88)].map((point) => mix(point, towards, 0.1));
     return { kind: "side", points, at: mix(...points, 0.5) };
+  }
+}
+
+// The edges of faces, in the order in which the faces have them: like a Map from the name of an edge, the lower number
+// first, to { name, ends, faces }. The numbers are in arrays, because a large mesh has hundreds of thousands of edges.
+class Edges {
+  constructor(faces) {
+    const sides = faces.reduce((count, face) => count + (face?.length ?? 0), 0);
+    let slots = 16;
+    while (slots < 2 * sides) slots *= 2;
+    // The number of an edge and 1 at a place that follows from its ends, or at the next free one (linear probing).
+    this.table = new Int32Array(slots);
+    // Two ends of each edge.
+    this.ends = new Uint32Array(2 * sides);
+    this.size = 0;
+    // The face of each side, and a chain of the sides of each edge: the last one, and the one before each. -1 ends it.
+    this.face = new Uint32Array(sides);
+    this.last = new Int32Array(sides).fill(-1);
+    this.before = new Int32Array(sides);
+    let side = 0;
+    faces.forEach((face, f) => {
+      if (!face) return;
+      for (let i = 0; i < face.length; i += 1) {
+        const edge = this.add(face[i], face[i + 1 < face.length ? i + 1 : 0]);
+        this.face[side] = f;
+        this.before[side] = this.last[edge];
+        this.last[edge] = side;
+        side += 1;
+      }
+    });
+  }
+
+  // The place of an edge in the table, or the free place where it belongs.
+  slot(low, high) {
+    const mask = this.table.length - 1;
+    let slot = Math.imul(Math.imul(low, 0x9e3779b1) ^ high, 0x85ebca6b);
+    slot = (slot ^ (slot >>> 15)) & mask;
+    for (;;) {
+      const edge = this.table[slot] - 1;
+      if (edge < 0 || (this.ends[2 * edge] === low && this.ends[2 * edge + 1] === high)) return slot;
+      slot = (slot + 1) & mask;
+    }
+  }
+
+  add(a, b) {
+    const [low, high] = a < b ? [a, b] : [b, a];
+    const slot = this.slot(low, high);
+    if (this.table[slot] === 0) {
+      this.ends[2 * this.size] = low;
+      this.ends[2 * this.size + 1] = high;
+      this.size += 1;
+      this.table[slot] = this.size;
+    }
+    return this.table[slot] - 1;
+  }
+
+  // The number of the edge between two vertices, or -1.
+  find(a, b) {
+    return this.table[this.slot(Math.min(a, b), Math.max(a, b))] - 1;
+  }
+
+  // The name of the first edge whose ends, the lower one first, meet a condition. Null if there is none.
+  nameWhere(isWanted) {
+    for (let edge = 0; edge < this.size; edge += 1) {
+      if (isWanted(this.ends[2 * edge], this.ends[2 * edge + 1])) return this.name(edge);
+    }
+    return null;
+  }
+
+  // The names of the edges that another mesh does not have.
+  missingIn(other) {
+    const names = [];
+    for (let edge = 0; edge < this.size; edge += 1) {
+      if (other.find(this.ends[2 * edge], this.ends[2 * edge + 1]) < 0) names.push(this.name(edge));
+    }
+    return names;
+  }
+
+  name(edge) {
+    return `v${this.ends[2 * edge]}-v${this.ends[2 * edge + 1]}`;
+  }
+
+  at(edge) {
+    const faces = [];
+    for (let side = this.last[edge]; side >= 0; side = this.before[side]) faces.push(this.face[side]);
+    return { name: this.name(edge), ends: [this.ends[2 * edge], this.ends[2 * edge + 1]], faces: faces.reverse() };
+  }
+
+  number(name) {
+    const parsed = parseName(name);
+    return parsed?.kind === "edge" ? this.find(...parsed.numbers) : -1;
+  }
+
+  has(name) {
+    return this.number(name) >= 0;
+  }
+
+  get(name) {
+    const edge = this.number(name);
+    return edge < 0 ? undefined : this.at(edge);
+  }
+
+  * keys() {
+    for (let edge = 0; edge < this.size; edge += 1) yield this.name(edge);
+  }
+
+  // All edges as objects, which are made when they are asked for first.
+  values() {
+    this.list ??= Array.from({ length: this.size }, (_, edge) => this.at(edge));
+    return this.list.values();
   }
 }
 
@@ -236,10 +340,15 @@ function meeting(point, way, a, ab, ac) {
 
 // The vector of a polygon's area (Newell): normal to it.
 export function areaOf(points) {
-  let sum = [0, 0, 0];
-  points.forEach((point, i) => {
-    sum = plus(sum, cross(minus(point, points[0]), minus(points[(i + 1) % points.length], points[0])));
-  });
+  const [x, y, z] = points[0] ?? [0, 0, 0];
+  const sum = [0, 0, 0];
+  for (let i = 1; i + 1 < points.length; i += 1) {
+    const [p, q] = [points[i], points[i + 1]];
+    const [ax, ay, az, bx, by, bz] = [p[0] - x, p[1] - y, p[2] - z, q[0] - x, q[1] - y, q[2] - z];
+    sum[0] += ay * bz - az * by;
+    sum[1] += az * bx - ax * bz;
+    sum[2] += ax * by - ay * bx;
+  }
   return sum;
 }
 

@@ -21,29 +21,42 @@ export class Timeline {
   // What the reads up to each time cost, as the engine counts it at the end.
   count() {
     const [reads, lines, bytes] = [0, 0, 0].map(() => new Uint32Array(this.length + 1));
-    // The rows and the cache lines that were read, for each table.
+    // The rows and the cache lines that were read, for each table: a byte for each, up to the last one.
     const seen = new Map();
-    let time = 0;
+    for (const step of this.steps) {
+      if (step.step !== "read") continue;
+      const table = seen.get(step.table) ?? { end: 0, bytes: step.bytes };
+      seen.set(step.table, table);
+      table.end = Math.max(table.end, rowNumber(step.row) + step.rows);
+    }
+    for (const table of seen.values()) {
+      table.rows = new Uint8Array(table.end);
+      table.lines = new Uint8Array(lineOf(table.end - 1, table.bytes, true) + 1);
+    }
+    let [time, readCount, lineCount, byteCount] = [0, 0, 0, 0];
     for (const step of this.steps) {
       const isRead = step.step === "read";
-      if (isRead && !seen.has(step.table)) seen.set(step.table, { rows: new Set(), lines: new Set() });
-      const table = seen.get(step.table);
+      const table = isRead ? seen.get(step.table) : null;
       const first = isRead ? rowNumber(step.row) : 0;
       for (let k = 0; k < (isRead ? step.rows : 1); k += 1) {
-        time += 1;
-        [reads[time], lines[time], bytes[time]] = [reads[time - 1], lines[time - 1], bytes[time - 1]];
-        if (!isRead) continue;
-        const row = first + k;
-        reads[time] += 1;
-        if (table.rows.has(row)) continue;
-        table.rows.add(row);
-        bytes[time] += step.bytes;
-        const last = Math.floor((row * step.bytes + Math.max(step.bytes, 1) - 1) / LINE_BYTES);
-        for (let line = Math.floor((row * step.bytes) / LINE_BYTES); line <= last; line += 1) {
-          if (table.lines.has(line)) continue;
-          table.lines.add(line);
-          lines[time] += 1;
+        if (isRead) {
+          readCount += 1;
+          const row = first + k;
+          if (table.rows[row] === 0) {
+            table.rows[row] = 1;
+            byteCount += step.bytes;
+            const last = lineOf(row, step.bytes, true);
+            for (let line = lineOf(row, step.bytes, false); line <= last; line += 1) {
+              if (table.lines[line] === 1) continue;
+              table.lines[line] = 1;
+              lineCount += 1;
+            }
+          }
         }
+        time += 1;
+        reads[time] = readCount;
+        lines[time] = lineCount;
+        bytes[time] = byteCount;
       }
     }
     Object.assign(this, { reads, lines, bytes });
@@ -117,6 +130,9 @@ export class Timeline {
     return names;
   }
 }
+
+// The cache line of the first or the last byte of a row.
+const lineOf = (row, bytes, isLast) => Math.floor((row * bytes + (isLast ? Math.max(bytes, 1) - 1 : 0)) / LINE_BYTES);
 
 export const rowNumber = (name) => Number(name.slice(1));
 const rowAt = (step, offset) => `${step.row[0]}${rowNumber(step.row) + offset}`;
