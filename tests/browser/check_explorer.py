@@ -781,6 +781,136 @@ def check_sizes(page, path, folder):
                 (folder / f"{name}-{scheme}.png").write_bytes(base64.b64decode(shot["data"]))
 
 
+# Finds texts and controls that overlap, are cut off, or make the page scroll aside.
+LAYOUT = """
+    const found = [];
+    const nameOf = one => (one.id ? '#' + one.id : one.tagName.toLowerCase() + (one.className ? '.' + one.className : '')) + ' “' + (one.textContent || one.value || '').trim().slice(0, 30) + '”';
+    if (document.documentElement.scrollWidth > innerWidth) found.push('the page scrolls aside: ' + document.documentElement.scrollWidth);
+    const isShown = one => one.checkVisibility({ visibilityProperty: true, contentVisibilityAuto: true });
+    const controls = 'button, input, select, textarea, summary';
+    const shown = [...document.querySelectorAll('body *:not(script, style, option, optgroup, noscript)')].filter(isShown);
+    // The part of a box that its scroll boxes show.
+    const visible = (one, box) => {
+        let [left, top, right, bottom] = [box.left, box.top, box.right, box.bottom];
+        for (let above = one.parentElement; above && above !== document.body; above = above.parentElement) {
+            const style = getComputedStyle(above), outer = above.getBoundingClientRect();
+            if (style.overflowX !== 'visible') [left, right] = [Math.max(left, outer.left), Math.min(right, outer.right)];
+            if (style.overflowY !== 'visible') [top, bottom] = [Math.max(top, outer.top), Math.min(bottom, outer.bottom)];
+        }
+        return right - left > 3 && bottom - top > 3 ? { left, top, right, bottom } : null;
+    };
+    const boxes = [];
+    for (const one of shown) {
+        const texts = [...one.childNodes].filter(node => node.nodeType === 3 && node.data.trim());
+        const isControl = one.matches(controls);
+        if (!isControl && !texts.length) continue;
+        // Text that is cut off says so with an ellipsis, and has a title; a field or a list scrolls.
+        const style = getComputedStyle(one);
+        const scrolls = ['auto', 'scroll'].includes(style.overflowX) || one.matches('input, textarea, select[size]');
+        const isCut = one.clientWidth > 0 && one.scrollWidth > one.clientWidth + 1;
+        if (isCut && !scrolls && style.textOverflow !== 'ellipsis') found.push('cut off: ' + nameOf(one));
+        if (isControl) boxes.push({ one, box: visible(one, one.getBoundingClientRect()) });
+        else if (!one.closest('button, summary, select')) for (const text of texts) {
+            const range = document.createRange();
+            range.selectNodeContents(text);
+            for (const rect of range.getClientRects()) boxes.push({ one, box: visible(one, rect) });
+        }
+    }
+    const isSticky = one => one.closest('thead, footer');
+    const all = boxes.filter(({ box }) => box);
+    all.forEach((a, i) => {
+        for (const b of all.slice(i + 1)) {
+            const wide = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left);
+            const high = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
+            if (wide < 3 || high < 6 || a.one.contains(b.one) || b.one.contains(a.one)) continue;
+            // Headings of tables and the player stay in place over what scrolls.
+            if (isSticky(a.one) !== isSticky(b.one)) continue;
+            found.push('overlap: ' + nameOf(a.one) + ' and ' + nameOf(b.one));
+        }
+    });
+    const aside = [...document.querySelectorAll('#panel, .tables, #right, #left, dialog, #race')].filter(one => isShown(one) && one.scrollWidth > one.clientWidth + 1);
+    return [...found, ...aside.map(one => 'scrolls aside: ' + nameOf(one))].slice(0, 12);
+"""
+
+# Texts whose contrast with their background is below 4.5 to 1 (WCAG 2.1).
+CONTRAST = """
+    const pen = Object.assign(document.createElement('canvas'), { width: 1, height: 1 }).getContext('2d', { willReadFrequently: true });
+    const known = new Map();
+    const parts = colour => {
+        if (!known.has(colour)) {
+            pen.clearRect(0, 0, 1, 1);
+            pen.fillStyle = colour;
+            pen.fillRect(0, 0, 1, 1);
+            known.set(colour, [...pen.getImageData(0, 0, 1, 1).data]);
+        }
+        return known.get(colour);
+    };
+    const light = ([r, g, b]) => [r, g, b].map(part => part / 255).map(part => part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4)
+        .reduce((sum, part, i) => sum + part * [0.2126, 0.7152, 0.0722][i], 0);
+    const found = new Set();
+    for (const one of document.querySelectorAll('body *:not(script, style, option, optgroup, noscript)')) {
+        if (![...one.childNodes].some(node => node.nodeType === 3 && node.data.trim()) || !one.checkVisibility({ visibilityProperty: true })) continue;
+        if (one.closest(':disabled, .absent, .stopped')) continue;
+        let ground = one;
+        while (ground && parts(getComputedStyle(ground).backgroundColor)[3] < 200) ground = ground.parentElement;
+        const [a, b] = [light(parts(getComputedStyle(one).color)), light(parts(getComputedStyle(ground ?? document.body).backgroundColor))];
+        const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+        if (contrast < 4.5) found.add(`${one.tagName}.${one.className} “${one.textContent.slice(0, 20)}” ${contrast.toFixed(2)}`);
+    }
+    return [...found].slice(0, 12);
+"""
+
+WIDTHS = {1440: 900, 1024: 768, 864: 768, 820: 1000, 768: 1024, 390: 844}
+
+
+def check_layout(page, path):
+    """In each tab and at each width: no overlap, nothing cut off, nothing that scrolls aside, and the mesh stays in its place."""
+    for width, height in WIDTHS.items():
+        page.browser.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 500)
+        page.open(path)
+        places = set()
+        for tab in ("query", "edit", "walk", "subdivide", "check", "measure"):
+            page.click(f"[data-tab={tab}]")
+            if tab == "query":
+                page.click("#next")
+            if tab == "edit":
+                page.edit("flip_edge v0-v2")
+            if tab == "walk":
+                page.click("#solution")
+            if tab == "subdivide":
+                page.type("#point", "v8")
+            found = page.browser.run(LAYOUT)
+            check(not found, width, tab, *found)
+            places.add(tuple(page.browser.run("const box = document.getElementById('view').getBoundingClientRect(); return [box.x + scrollX, box.y + scrollY, box.width, box.height]")))
+        check(len(places) == 1, width, "the mesh moves", places)
+        for button in ("#mesh-button", "#share-button", "#help-button"):
+            page.click(button)
+            page.browser.wait("return document.getElementById('dialog').open")
+            found = [one for one in page.browser.run(LAYOUT.replace("'body *:not", "'dialog *:not")) if "the page" not in one]
+            check(not found, width, button, *found)
+            page.click("#dialog-close")
+    page.browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
+
+
+def check_contrast(page, path):
+    for scheme in ("light", "dark"):
+        page.browser.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        page.open(path)
+        for tab in ("query", "edit", "walk", "subdivide", "check", "measure"):
+            page.click(f"[data-tab={tab}]")
+            if tab == "query":
+                for _ in range(4):
+                    page.click("#next")
+            if tab == "edit":
+                page.edit("remove_vertex v0")
+            if tab == "walk":
+                page.click("#solution")
+            check(not page.browser.run(CONTRAST), scheme, tab, *page.browser.run(CONTRAST))
+        page.click("#mesh-button")
+        check(not page.browser.run(CONTRAST), scheme, "meshes", *page.browser.run(CONTRAST))
+    page.browser.devtools("Emulation.setEmulatedMedia", features=[])
+
+
 def check_quiet(browser):
     """No errors in the console, and no request but for the page itself."""
     errors = [entry["message"] for entry in browser.log("browser") if entry["level"] == "SEVERE"]
@@ -804,7 +934,7 @@ def main():
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
             for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
-                         check_walks, check_measurements, check_levels, check_regularity, check_lessons):
+                         check_walks, check_measurements, check_levels, check_regularity, check_layout, check_contrast, check_lessons):
                 part(page, path)
                 check_quiet(browser)
             check_sizes(page, path, folder)

@@ -36,7 +36,7 @@ export function subdividePanel(explorer) {
   const models = explorer.refined?.models ?? [];
   const shown = models[level];
   return [
-    el("div", { class: "grow" },
+    el("div", { class: "grow columns" }, el("section", {},
       el("p", {}, el("label", {}, "scheme ", select(explorer.schemes, scheme, (name) => look({ scheme: name, point: null }), { id: "scheme" })),
         " ", el("label", {}, "level ", el("input", {
           type: "range", min: 0, max: MOST_LEVELS, value: String(level), id: "level",
@@ -44,13 +44,13 @@ export function subdividePanel(explorer) {
         })), ` ${level}`,
         button("use this level as the mesh", () => explorer.run(() =>
           explorer.replace(explorer.refined.levels[level], `${scheme} level ${level}`, { tab: "query" })), { disabled: !shown })),
-      level > 0 && shown ? pointField(shown, point, look) : null,
       creaseForm(explorer),
       explorer.failed ? el("p", { class: "refusal" }, explorer.failed) : null,
-      shown ? levelTable(models) : null,
+      shown ? levelTable(models) : null),
+      el("section", {}, level > 0 && shown ? pointField(shown, point, look) : null,
       stencilTable(explorer.stencil, level) ?? el("p", { class: "hint" }, point === null
         ? "Click a point of a level above 0: the points of the level before that it is made of are shown with their weights."
-        : "")),
+        : ""))),
   ];
 }
 
@@ -80,7 +80,7 @@ function histogram(model) {
   const most = Math.max(1, ...[...counts.values()].map(({ all }) => all));
   const columns = [...counts].sort(([a], [b]) => a - b).map(([valence, { all, irregular }]) =>
     el("span", { class: irregular === all && "irregular", title: `${count(all, "vertex")} of valence ${valence}, ${irregular.toLocaleString("en")} of them irregular` },
-      el("b", {}, all.toLocaleString("en")), el("i", { style: `height: ${Math.max(2, Math.round((22 * all) / most))}px` }), `${valence}`));
+      el("b", {}, all.toLocaleString("en")), el("i", { style: `height: ${Math.max(2, Math.round((40 * all) / most))}px` }), `${valence}`));
   return el("div", { class: "histogram" }, columns);
 }
 
