@@ -153,6 +153,7 @@ export class Card {
       const own = [...first].filter((line) => line.parentElement === body);
       body.querySelector(".last-first")?.classList.remove("last-first");
       own.at(-1)?.classList.add("last-first");
+      body.parentElement.classList.toggle("touched", this.changes.size > 0 && own.length > 0);
       let at = body.firstElementChild;
       for (const line of [...own, ...lines.filter((other) => !first.has(other))]) {
         if (line === at) at = at.nextElementSibling;

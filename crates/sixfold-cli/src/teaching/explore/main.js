@@ -107,6 +107,10 @@ class Page {
       tab.tabIndex = tab.dataset.tab === view.tab ? 0 : -1;
     }
     keepingFocus(() => find("panel").replaceChildren(...panel(explorer)));
+    for (const canvas of find("panel").querySelectorAll("[data-picture]")) {
+      const { models } = explorer.refined;
+      this.view.drawSmall(canvas, models[canvas.dataset.picture], models[0]);
+    }
     find("cards").hidden = !TABS_WITH_CARDS.includes(view.tab);
     find("chosen").hidden = !TABS_WITH_CARDS.includes(view.tab) || view.tab === "walk";
     keepingFocus(() => find("chosen").replaceChildren("shown: ", ...explorer.structures.map((name) => button(name, () => explorer.toggle(name), {

@@ -85,7 +85,10 @@ export class Model {
       }
     }
     this.centre = this.vertexCount ? mix(low, high, 0.5) : [0, 0, 0];
-    this.radius = (this.vertexCount && length(minus(high, low)) / 2) || 1;
+    let most = 0;
+    for (const vertex of this.vertices) if (vertex) most = Math.max(most, length(minus(vertex, this.centre)));
+    // A little room for the names.
+    this.radius = 1.06 * most || 1;
   }
 
   // Cuts the faces into triangles: three numbers of vertices and one of a face for each.

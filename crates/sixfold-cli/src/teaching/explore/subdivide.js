@@ -5,6 +5,8 @@ import { EngineFailure } from "./engine.js";
 import { Model, parseName } from "./mesh.js";
 
 const MOST_LEVELS = 6;
+// Larger levels have no picture.
+const MOST_PICTURED = 9000;
 
 // The levels of each mesh, by scheme and number of levels.
 const refinements = new WeakMap();
@@ -50,8 +52,17 @@ export function subdividePanel(explorer) {
       el("section", {}, level > 0 && shown ? pointField(shown, point, look) : null,
       stencilTable(explorer.stencil, level) ?? el("p", { class: "hint" }, point === null
         ? "Click a point of a level above 0: the points of the level before that it is made of are shown with their weights."
-        : ""))),
+        : "")),
+      pictures(models, level, look)),
   ];
+}
+
+// A picture of each level, which chooses it. The page draws them, as it draws the mesh.
+function pictures(models, level, look) {
+  const shown = models.map((model, i) => [model, i]).filter(([model]) => model.faceCount <= MOST_PICTURED);
+  return el("section", { class: "pictures", "aria-label": "Levels" }, shown.map(([, i]) =>
+    button([el("canvas", { "data-picture": String(i) }), `level ${i}`], () => look({ level: i, point: null }),
+      { "aria-pressed": String(i === level), "data-level": String(i) })));
 }
 
 // The level as a mark after the name of an element: v6 of level 0 and v6 of level 1 are two points.
@@ -59,7 +70,7 @@ export const levelMark = (level) => [...String(level)].map((digit) => "⁰¹²³
 
 function levelTable(models) {
   return el("table", { class: "list", id: "levels" },
-    el("tr", {}, ["level", "vertices", "edges", "faces", "V − E + F", "vertices by valence"].map((text) => el("th", {}, text))),
+    el("tr", {}, ["level", "vertices", "edges", "faces", "V\u00a0−\u00a0E\u00a0+\u00a0F", "vertices by valence"].map((text) => el("th", {}, text))),
     models.map((model, i) => {
       const [v, e, f] = [model.vertexCount, model.edges.size, model.faceCount];
       return el("tr", {}, [i, v, e, f, v - e + f].map((value) => el("td", { class: "count" }, value.toLocaleString("en"))),

@@ -113,6 +113,14 @@ export class View {
     this.ratio = ratio;
   }
 
+  // Draws another mesh on a small canvas, from the same side, so that a third one would fill the canvas.
+  drawSmall(canvas, model, { centre, radius }) {
+    const size = [canvas.clientWidth, canvas.clientHeight];
+    if (size[0] < 2) return;
+    const small = Object.assign(Object.create(this), { canvas, model, size, centre, radius, raster: new Raster(), shades: null, zoom: 0.9, shift: [0, 0] });
+    small.drawMesh();
+  }
+
   // The colours of both sides of each face: light comes from the eye's left shoulder.
   lit(front, back) {
     const light = [-0.35, 0.5, 0.8].map((part) => part / Math.hypot(0.35, 0.5, 0.8));
@@ -181,7 +189,7 @@ export class View {
     for (const mark of [...this.valenceMarks(), ...this.marks]) {
       if (!mark.place) continue;
       this.drawMark(pen, mark);
-      if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: true, ...(mark.style === "thin" && thinLabel(mark.place)) });
+      if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: !mark.isFaint, ...(mark.style === "thin" && thinLabel(mark.place)) });
     }
     labels.sort((a, b) => Number(a.isThin ?? false) - Number(b.isThin ?? false));
     this.drawLabels(pen, [...labels, ...this.ownNames()]);
@@ -238,7 +246,7 @@ export class View {
     const irregular = [...model.vertices.keys()].filter((v) => model.valences[v]?.isIrregular).slice(0, MOST_DOTS);
     const isNamed = model.vertexCount > MOST_NAMES && irregular.length <= MOST_NAMES;
     return irregular.map((v) => ({
-      place: model.place(`v${v}`), colour, style: "dot", label: isNamed ? this.vertexLabel(v) : null,
+      place: model.place(`v${v}`), colour, style: "dot", label: isNamed ? this.vertexLabel(v) : null, isFaint: true,
     }));
   }
 
