@@ -470,9 +470,16 @@ def check_arrows(page, path):
         check(page.browser.run("return labels()") == labels, structure, page.browser.run("return labels()"))
 
 
-CHANGED_ROWS = """
+# Steps through an edit: the rows of a card that are changed and its sentence after each step, from the beginning.
+EDIT_STEPS = """
     const card = document.querySelector(`.card[data-structure=${arguments[0]}]`);
-    return [...card.querySelectorAll('tr[data-row]')].filter(row => row.querySelector('.changed')).map(row => row.dataset.row)
+    const steps = [];
+    for (let step = 0; step <= arguments[1]; step += 1) {
+        document.getElementById(step ? 'next' : 'first').click();
+        const changed = [...card.querySelectorAll('tr[data-row]')].filter(row => row.querySelector('.changed'));
+        steps.push([changed.map(row => row.dataset.row), card.querySelector('.now').textContent]);
+    }
+    return steps;
 """
 
 
@@ -500,14 +507,14 @@ def check_edit_steps(page, path):
             if edit.startswith(("flip", "set")) and name != "face-vertex":
                 # Each row stays, with the same columns.
                 check(dict(page.browser.run(stored, name)) == before[name], name, edit, "the tables before")
-            check(page.browser.run(CHANGED_ROWS, name) == [], name, edit, "nothing is written yet")
+            steps = page.browser.run(EDIT_STEPS, name, len(writes))
+            check(steps[0] == [[], "before the edit"], name, edit, steps[0])
             for number in range(1, len(writes) + 1):
-                page.click("#next")
                 begun = {row["table"] for row in writes[:number]}
                 done = writes[:number] + [row for row in answer["rows"] if not row["written"] and (row["table"] in begun or number == len(writes))]
                 expected = {row["row"] for row in done if row["before"] != row["after"]}
-                check(set(page.browser.run(CHANGED_ROWS, name)) == expected, name, edit, number, page.browser.run(CHANGED_ROWS, name))
-                check(writes[number - 1]["row"] in page.text(f".card[data-structure={name}] .now"), name, edit, number, writes[number-1], page.text(f".card[data-structure={name}] .now"))
+                changed, sentence = steps[number]
+                check(set(changed) == expected and writes[number - 1]["row"] in sentence, name, edit, number, steps[number])
             check(page.browser.run(tables) == end, name, edit, "the end is not as before")
             page.click("#back")
             page.click("#next")
@@ -528,6 +535,29 @@ def check_edit_steps(page, path):
     check(page.browser.run(faces) == 8, "the mesh before the edit of a link")
     page.click("#last")
     check(page.browser.run(faces) == 10, "the mesh after the edit of a link")
+
+
+def check_elements(page, path):
+    """All elements are in a list, which chooses them by keys; it follows the mesh and the level."""
+    page.open(path)
+    page.click("#elements summary")
+    listed = "return [...document.querySelectorAll('#elements option')].map(one => one.value)"
+    check(len(page.browser.run(listed)) == 6 + 12 + 8, page.browser.run(listed))
+    page.browser.run("document.querySelector('#elements select').focus()")
+    down = [{"type": "keyDown", "value": "\ue015"}, {"type": "keyUp", "value": "\ue015"}]
+    page.browser.ask("POST", f"{page.browser.session}/actions", {"actions": [{"type": "key", "id": "keys", "actions": down}]})
+    page.settle()
+    check(page.browser.run("return document.getElementById('element').value") == "v1", "the next element by a key")
+    choose = "const list = document.querySelector('#elements select'); list.value = arguments[0]; list.dispatchEvent(new Event('change', { bubbles: true }))"
+    page.browser.run(choose, "v1-v3")
+    page.settle()
+    check(page.browser.run("return document.getElementById('element').value") == "v1-v3", "an edge of the list")
+    page.edit("poke_face f0")
+    check({"v6", "f9"} <= set(page.browser.run(listed)), page.browser.run(listed))
+    page.click("[data-tab=subdivide]")
+    page.browser.run(choose, "v12")
+    page.settle()
+    check(page.browser.run("return document.getElementById('point').value") == "v12", "a point of a level")
 
 
 def check_primary(page, path):
@@ -945,7 +975,7 @@ def main():
         try:
             page = Page(browser, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_elements, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
                          check_walks, check_measurements, check_levels, check_regularity, check_layout, check_contrast, check_lessons):
                 part(page, path)
                 check_quiet(browser)

@@ -14,6 +14,8 @@ const EYE = 4.2;
 // The time of a turn to an element, and the angle from its normal at which it is seen then.
 const TURN_MS = 300;
 const ASLANT = 0.3;
+// A mesh with more triangles is not turned: to find out what hides an element would take too long.
+const MOST_TURNED = 60000;
 
 export class View {
   // `onChoose(name, more)` is called with the element that is clicked; `more` if Shift is pressed.
@@ -186,9 +188,11 @@ export class View {
     pen.clearRect(0, 0, width, height);
     pen.lineCap = pen.lineJoin = "round";
     const labels = [];
-    for (const mark of [...this.valenceMarks(), ...this.marks]) {
-      if (!mark.place) continue;
-      this.drawMark(pen, mark);
+    const placed = [...this.valenceMarks(), ...this.marks].filter(({ place }) => place);
+    // Faces are below what lies in them.
+    const isBelow = ({ style }) => style === "fill";
+    for (const mark of [...placed.filter(isBelow), ...placed.filter((mark) => !isBelow(mark))]) this.drawMark(pen, mark);
+    for (const mark of placed) {
       if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: !mark.isFaint, ...(mark.style === "thin" && thinLabel(mark.place)) });
     }
     labels.sort((a, b) => Number(a.isThin ?? false) - Number(b.isThin ?? false));
@@ -399,7 +403,7 @@ export class View {
   // Turns the mesh so that a place can be seen, if the mesh hides it and the reader does not turn the mesh.
   turnTo({ at }) {
     const { model } = this;
-    if (this.isTurning || !model) return;
+    if (this.isTurning || !model || model.triangles.length > 4 * MOST_TURNED) return;
     const now = unit(this.turn.slice(6));
     const eye = (way) => plus(this.centre, scale(way, EYE * this.radius));
     if (model.isFree(at, eye(now))) return;
