@@ -173,7 +173,7 @@ def check_pointer(page, path):
     chosen = set()
     for i in range(5):
         for j in range(5):
-            x, y = (round(box[0] + box[2] * (0.3 + 0.1 * i)), round(box[1] + box[3] * (0.3 + 0.1 * j)))
+            x, y = (round(box[0] + box[2] * (0.14 + 0.18 * i)), round(box[1] + box[3] * (0.14 + 0.18 * j)))
             click = [{"type": "pointerMove", "x": x, "y": y}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
             actions = [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": click}]
             page.browser.ask("POST", f"{page.browser.session}/actions", {"actions": actions})
@@ -476,9 +476,16 @@ def check_arrows(page, path):
         check(page.browser.run("return labels()") == labels, structure, page.browser.run("return labels()"))
 
 
-CHANGED_ROWS = """
+# Steps through an edit: the rows of a card that are changed and its sentence after each step, from the beginning.
+EDIT_STEPS = """
     const card = document.querySelector(`.card[data-structure=${arguments[0]}]`);
-    return [...card.querySelectorAll('tr[data-row]')].filter(row => row.querySelector('.changed')).map(row => row.dataset.row)
+    const steps = [];
+    for (let step = 0; step <= arguments[1]; step += 1) {
+        document.getElementById(step ? 'next' : 'first').click();
+        const changed = [...card.querySelectorAll('tr[data-row]')].filter(row => row.querySelector('.changed'));
+        steps.push([changed.map(row => row.dataset.row), card.querySelector('.now').textContent]);
+    }
+    return steps;
 """
 
 
@@ -506,14 +513,14 @@ def check_edit_steps(page, path):
             if edit.startswith(("flip", "set")) and name != "face-vertex":
                 # Each row stays, with the same columns.
                 check(dict(page.browser.run(stored, name)) == before[name], name, edit, "the tables before")
-            check(page.browser.run(CHANGED_ROWS, name) == [], name, edit, "nothing is written yet")
+            steps = page.browser.run(EDIT_STEPS, name, len(writes))
+            check(steps[0] == [[], "before the edit"], name, edit, steps[0])
             for number in range(1, len(writes) + 1):
-                page.click("#next")
                 begun = {row["table"] for row in writes[:number]}
                 done = writes[:number] + [row for row in answer["rows"] if not row["written"] and (row["table"] in begun or number == len(writes))]
                 expected = {row["row"] for row in done if row["before"] != row["after"]}
-                check(set(page.browser.run(CHANGED_ROWS, name)) == expected, name, edit, number, page.browser.run(CHANGED_ROWS, name))
-                check(writes[number - 1]["row"] in page.text(f".card[data-structure={name}] .now"), name, edit, number, writes[number-1], page.text(f".card[data-structure={name}] .now"))
+                changed, sentence = steps[number]
+                check(set(changed) == expected and writes[number - 1]["row"] in sentence, name, edit, number, steps[number])
             check(page.browser.run(tables) == end, name, edit, "the end is not as before")
             page.click("#back")
             page.click("#next")
@@ -534,6 +541,29 @@ def check_edit_steps(page, path):
     check(page.browser.run(faces) == 8, "the mesh before the edit of a link")
     page.click("#last")
     check(page.browser.run(faces) == 10, "the mesh after the edit of a link")
+
+
+def check_elements(page, path):
+    """All elements are in a list, which chooses them by keys; it follows the mesh and the level."""
+    page.open(path)
+    page.click("#elements summary")
+    listed = "return [...document.querySelectorAll('#elements option')].map(one => one.value)"
+    check(len(page.browser.run(listed)) == 6 + 12 + 8, page.browser.run(listed))
+    page.browser.run("document.querySelector('#elements select').focus()")
+    down = [{"type": "keyDown", "value": "\ue015"}, {"type": "keyUp", "value": "\ue015"}]
+    page.browser.ask("POST", f"{page.browser.session}/actions", {"actions": [{"type": "key", "id": "keys", "actions": down}]})
+    page.settle()
+    check(page.browser.run("return document.getElementById('element').value") == "v1", "the next element by a key")
+    choose = "const list = document.querySelector('#elements select'); list.value = arguments[0]; list.dispatchEvent(new Event('change', { bubbles: true }))"
+    page.browser.run(choose, "v1-v3")
+    page.settle()
+    check(page.browser.run("return document.getElementById('element').value") == "v1-v3", "an edge of the list")
+    page.edit("poke_face f0")
+    check({"v6", "f9"} <= set(page.browser.run(listed)), page.browser.run(listed))
+    page.click("[data-tab=subdivide]")
+    page.browser.run(choose, "v12")
+    page.settle()
+    check(page.browser.run("return document.getElementById('point').value") == "v12", "a point of a level")
 
 
 def check_primary(page, path):
@@ -678,6 +708,11 @@ def check_measurements(page, path):
     rows = page.browser.run("return [...document.querySelectorAll('#times tr[data-structure]')].map(row => row.dataset.structure)")
     check(sorted(rows) == sorted(STRUCTURES), rows)
     check(page.text("#message") == "", page.text("#message"))
+    # Another relation is chosen here, and the times of both stand beside each other.
+    page.click("[data-relation=face_faces]")
+    page.click("#measure")
+    heads = page.browser.run("return [...document.querySelector('#measured tr').cells].map(one => one.textContent)")
+    check(heads == ["structure", "VV", "FF"], heads)
 
 
 def check_levels(page, path):
@@ -695,6 +730,11 @@ def check_levels(page, path):
     levels = "return [...document.querySelectorAll('#levels tr')].slice(1).map(row => [...row.cells].map(cell => cell.textContent))"
     # Each vertex of an octahedron has valence 4, each new point of Loop's scheme valence 6.
     check(page.browser.run(levels) == [["0", "6", "12", "8", "2", "64"], ["1", "18", "48", "32", "2", "64126"]], page.browser.run(levels))
+    drawn = """return [...document.querySelectorAll('[data-picture]')].map(one =>
+        new Set(one.getContext('2d').getImageData(0, 0, one.width, one.height).data).size > 8)"""
+    check(page.browser.run(drawn) == [True, True], "the pictures of the levels", page.browser.run(drawn))
+    page.click("[data-level='0']")
+    check(page.text("#mesh-size").startswith("6 vertices"), page.text("#mesh-size"))
     # A sharp edge stays with its mesh, and goes with an edit that deletes it.
     page.open(path)
     page.type("#element", "v0-v2")
@@ -896,6 +936,138 @@ def check_sizes(page, path, folder):
                 (folder / f"{name}-{scheme}.png").write_bytes(base64.b64decode(shot["data"]))
 
 
+# Finds texts and controls that overlap, are cut off, or make the page scroll aside.
+LAYOUT = """
+    const found = [];
+    const nameOf = one => (one.id ? '#' + one.id : one.tagName.toLowerCase() + (one.className ? '.' + one.className : '')) + ' “' + (one.textContent || one.value || '').trim().slice(0, 30) + '”';
+    if (document.documentElement.scrollWidth > innerWidth) found.push('the page scrolls aside: ' + document.documentElement.scrollWidth);
+    const isShown = one => one.checkVisibility({ visibilityProperty: true, contentVisibilityAuto: true });
+    const controls = 'button, input, select, textarea, summary';
+    const shown = [...document.querySelectorAll('body *:not(script, style, option, optgroup, noscript)')].filter(isShown);
+    // The part of a box that its scroll boxes show.
+    const visible = (one, box) => {
+        let [left, top, right, bottom] = [box.left, box.top, box.right, box.bottom];
+        for (let above = one.parentElement; above && above !== document.body; above = above.parentElement) {
+            const style = getComputedStyle(above), outer = above.getBoundingClientRect();
+            if (style.overflowX !== 'visible') [left, right] = [Math.max(left, outer.left), Math.min(right, outer.right)];
+            if (style.overflowY !== 'visible') [top, bottom] = [Math.max(top, outer.top), Math.min(bottom, outer.bottom)];
+        }
+        return right - left > 3 && bottom - top > 3 ? { left, top, right, bottom } : null;
+    };
+    const boxes = [];
+    for (const one of shown) {
+        const texts = [...one.childNodes].filter(node => node.nodeType === 3 && node.data.trim());
+        const isControl = one.matches(controls);
+        if (!isControl && !texts.length) continue;
+        // Text that is cut off says so with an ellipsis, and has a title; a field or a list scrolls.
+        const style = getComputedStyle(one);
+        const scrolls = ['auto', 'scroll'].includes(style.overflowX) || one.matches('input, textarea, select[size]');
+        const isCut = one.clientWidth > 0 && one.scrollWidth > one.clientWidth + 1;
+        if (isCut && !scrolls && style.textOverflow !== 'ellipsis') found.push('cut off: ' + nameOf(one));
+        if (isControl) boxes.push({ one, box: visible(one, one.getBoundingClientRect()) });
+        else if (!one.closest('button, summary, select')) for (const text of texts) {
+            const range = document.createRange();
+            range.selectNodeContents(text);
+            for (const rect of range.getClientRects()) boxes.push({ one, box: visible(one, rect) });
+        }
+    }
+    const isSticky = one => one.closest('thead, footer');
+    const all = boxes.filter(({ box }) => box);
+    all.forEach((a, i) => {
+        for (const b of all.slice(i + 1)) {
+            const wide = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left);
+            const high = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
+            if (wide < 3 || high < 6 || a.one.contains(b.one) || b.one.contains(a.one)) continue;
+            // Headings of tables and the player stay in place over what scrolls.
+            if (isSticky(a.one) !== isSticky(b.one)) continue;
+            found.push('overlap: ' + nameOf(a.one) + ' and ' + nameOf(b.one));
+        }
+    });
+    const aside = [...document.querySelectorAll('#panel, #panel section, #panel .grow, .tables, #right, #left, dialog, #race')].filter(one => isShown(one) && one.scrollWidth > one.clientWidth + 1);
+    return [...found, ...aside.map(one => 'scrolls aside: ' + nameOf(one))].slice(0, 12);
+"""
+
+# Texts whose contrast with their background is below 4.5 to 1 (WCAG 2.1).
+CONTRAST = """
+    const pen = Object.assign(document.createElement('canvas'), { width: 1, height: 1 }).getContext('2d', { willReadFrequently: true });
+    const known = new Map();
+    const parts = colour => {
+        if (!known.has(colour)) {
+            pen.clearRect(0, 0, 1, 1);
+            pen.fillStyle = colour;
+            pen.fillRect(0, 0, 1, 1);
+            known.set(colour, [...pen.getImageData(0, 0, 1, 1).data]);
+        }
+        return known.get(colour);
+    };
+    const light = ([r, g, b]) => [r, g, b].map(part => part / 255).map(part => part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4)
+        .reduce((sum, part, i) => sum + part * [0.2126, 0.7152, 0.0722][i], 0);
+    const found = new Set();
+    for (const one of document.querySelectorAll('body *:not(script, style, option, optgroup, noscript)')) {
+        if (![...one.childNodes].some(node => node.nodeType === 3 && node.data.trim()) || !one.checkVisibility({ visibilityProperty: true })) continue;
+        if (one.closest(':disabled, .absent, .stopped')) continue;
+        let ground = one;
+        while (ground && parts(getComputedStyle(ground).backgroundColor)[3] < 200) ground = ground.parentElement;
+        const [a, b] = [light(parts(getComputedStyle(one).color)), light(parts(getComputedStyle(ground ?? document.body).backgroundColor))];
+        const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+        if (contrast < 4.5) found.add(`${one.tagName}.${one.className} “${one.textContent.slice(0, 20)}” ${contrast.toFixed(2)}`);
+    }
+    return [...found].slice(0, 12);
+"""
+
+WIDTHS = {1440: 900, 1024: 768, 864: 768, 820: 1000, 768: 1024, 390: 844}
+
+
+def check_layout(page, path):
+    """In each tab and at each width: no overlap, nothing cut off, nothing that scrolls aside, and the mesh stays in its place."""
+    for width, height in WIDTHS.items():
+        page.browser.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 500)
+        page.open(path)
+        places = set()
+        for tab in ("query", "edit", "walk", "subdivide", "check", "measure"):
+            page.click(f"[data-tab={tab}]")
+            if tab == "query":
+                page.click("#next")
+            if tab == "edit":
+                page.edit("flip_edge v0-v2")
+            if tab == "walk":
+                page.click("#solution")
+            if tab == "subdivide":
+                page.type("#point", "v8")
+            if tab == "measure" and width in (1440, 390):
+                page.click("#measure")
+            found = page.browser.run(LAYOUT)
+            check(not found, width, tab, *found)
+            places.add(tuple(page.browser.run("const box = document.getElementById('view').getBoundingClientRect(); return [box.x + scrollX, box.y + scrollY, box.width, box.height]")))
+        check(len(places) == 1, width, "the mesh moves", places)
+        for button in ("#mesh-button", "#share-button", "#help-button"):
+            page.click(button)
+            page.browser.wait("return document.getElementById('dialog').open")
+            found = [one for one in page.browser.run(LAYOUT.replace("'body *:not", "'dialog *:not")) if "the page" not in one]
+            check(not found, width, button, *found)
+            page.click("#dialog-close")
+    page.browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
+
+
+def check_contrast(page, path):
+    for scheme in ("light", "dark"):
+        page.browser.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        page.open(path)
+        for tab in ("query", "edit", "walk", "subdivide", "check", "measure"):
+            page.click(f"[data-tab={tab}]")
+            if tab == "query":
+                for _ in range(4):
+                    page.click("#next")
+            if tab == "edit":
+                page.edit("remove_vertex v0")
+            if tab == "walk":
+                page.click("#solution")
+            check(not page.browser.run(CONTRAST), scheme, tab, *page.browser.run(CONTRAST))
+        page.click("#mesh-button")
+        check(not page.browser.run(CONTRAST), scheme, "meshes", *page.browser.run(CONTRAST))
+    page.browser.devtools("Emulation.setEmulatedMedia", features=[])
+
+
 def check_quiet(browser):
     """No errors in the console, and no request but for the page itself."""
     errors = [entry["message"] for entry in browser.log("browser") if entry["level"] == "SEVERE"]
@@ -918,8 +1090,8 @@ def main():
         try:
             page = Page(browser, sixfold, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
-                         check_walks, check_measurements, check_levels, check_regularity, check_lessons):
+            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_elements, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+                         check_walks, check_measurements, check_levels, check_regularity, check_layout, check_contrast, check_lessons):
                 part(page, path)
                 check_quiet(browser)
             check_sizes(page, path, folder)

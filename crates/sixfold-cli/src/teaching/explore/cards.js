@@ -74,7 +74,7 @@ export class Card {
 
   table({ element, columns, total, rows }) {
     const head = columns.map((column, i) =>
-      el("th", { title: column.about, scope: "col", class: isSpare(columns, rows, i) && "spare" },
+      el("th", { title: column.about, scope: "col", class: isSpare(element, columns, rows, i) && "spare" },
         el("span", {}, (PARTED[column.name] ?? column.name) + (column.derived ? "†" : ""))));
     const body = [];
     let before = -1;
@@ -100,7 +100,7 @@ export class Card {
     }
     fields.forEach((field, i) => {
       const { table, derived } = columns[i];
-      const kind = derived ? "derived" : isSpare(columns, rows, i) && "spare";
+      const kind = derived ? "derived" : isSpare(element, columns, rows, i) && "spare";
       const cell = el("td", { class: kind, title: field.length > 12 && field }, shortened(field));
       line.append(cell);
       // A field that is not stored is not read.
@@ -124,6 +124,7 @@ export class Card {
     const last = [...this.changes].reverse().sort(([, a], [, b]) => Number(a.written) - Number(b.written));
     for (const [key, { before }] of last) if (before) this.deletedIn.set(this.cells.get(key)?.[0], key);
     for (const [key, change] of this.changes) this.showChange(key, change, true);
+    for (const { body } of this.bodies) body.parentElement.classList.toggle("moved", body.querySelector(".spare.changed") !== null);
   }
 
   // Shows a row before an edit, or after it with what it changed.
@@ -153,6 +154,7 @@ export class Card {
       const own = [...first].filter((line) => line.parentElement === body);
       body.querySelector(".last-first")?.classList.remove("last-first");
       own.at(-1)?.classList.add("last-first");
+      body.parentElement.classList.toggle("touched", this.changes.size > 0 && own.length > 0);
       let at = body.firstElementChild;
       for (const line of [...own, ...lines.filter((other) => !first.has(other))]) {
         if (line === at) at = at.nextElementSibling;
@@ -253,11 +255,11 @@ export class Card {
   }
 }
 
-// Whether a column can be left out where there is no room: coordinates, if the table also has a stored column that
-// connects elements.
-function isSpare(columns, rows, i) {
+// Whether a column can be left out where there is no room: the coordinates of vertices, if their table also has a stored
+// column that connects elements.
+function isSpare(element, columns, rows, i) {
   const isPosition = rows.some(({ fields }) => fields[i]?.startsWith("("));
-  return isPosition && columns.some((column, k) => k !== i && !column.derived);
+  return element === "vertex" && isPosition && columns.some((column, k) => k !== i && !column.derived);
 }
 
 // A field whose coordinates have four digits at most.

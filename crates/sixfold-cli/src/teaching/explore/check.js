@@ -28,15 +28,15 @@ export function checkPanel(explorer) {
   const { verdicts, faults, facts } = explorer.checked;
   const repair = (structure) => button("repair", () => explorer.run(() => askRepair(explorer, structure)), { "data-repair": structure });
   return [
-    el("div", { class: "grow" },
+    el("div", { class: "grow columns" }, el("section", {},
       explorer.notes.length ? el("details", { open: true }, el("summary", {}, "reading the mesh"), explorer.notes.map((note) => el("p", {}, note))) : null,
       el("table", { class: "list", id: "verdicts" }, verdicts.map(({ backend, holds, reason }) => el("tr", { "data-structure": backend },
         el("th", { scope: "row" }, backend), el("td", { class: holds ? "good" : "refusal" }, holds ? "✓ holds the mesh" : `✗ ${reason} `, holds ? null : repair(backend))))),
-      repairTable(explorer),
-      el("h3", {}, faults.length ? "Faults and boundaries" : "No faults"),
+      repairTable(explorer)),
+      el("section", {}, el("h3", {}, faults.length ? "Faults and boundaries" : "No faults"),
       el("ul", { id: "faults" }, faults.map((fault) => faultItem(explorer, fault))),
       loopList(explorer),
-      factsLine(facts)),
+      factsList(facts))),
   ];
 }
 
@@ -61,15 +61,17 @@ function loopList(explorer) {
     button("mark all", mark(loops.flat()), { class: "link" }));
 }
 
-function factsLine(facts) {
-  const parts = [
-    `V − E + F = ${facts.vertices} − ${facts.edges} + ${facts.faces} = ${facts.euler_characteristic}`,
-    count(facts.components, "component"),
-    facts.closed ? "closed" : count(facts.boundary_edges, "boundary edge"),
-    facts.orientable ? (facts.consistently_oriented ? "consistently oriented" : "orientable, but not all faces agree") : "not orientable",
+function factsList(facts) {
+  const { vertices, edges, faces, euler_characteristic: euler, orientable, consistently_oriented: isConsistent } = facts;
+  const rows = [
+    ["V − E + F", `${[vertices, edges, faces].map((value) => value.toLocaleString("en")).join(" − ").replace(/− (\S+)$/, "+ $1")} = ${euler}`],
+    ["components", facts.components],
+    ["boundary", facts.closed ? "closed" : count(facts.boundary_edges, "edge")],
+    ["orientation", orientable ? (isConsistent ? "consistently oriented" : "orientable, but not all faces agree") : "not orientable"],
   ];
-  if (Number.isInteger(facts.genus)) parts.push(`genus ${facts.genus}`);
-  return el("p", { class: "hint" }, parts.join(" · "));
+  if (Number.isInteger(facts.genus)) rows.push(["genus", facts.genus]);
+  return el("div", {}, el("h3", {}, "The mesh"), el("table", { class: "list", id: "facts" },
+    rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, name), el("td", {}, String(value))))));
 }
 
 async function askRepair(explorer, structure) {

@@ -9,6 +9,24 @@ const MOST_BYTES = 100e6;
 // Counts of a shape are small at first, so that its tables can be read.
 const SMALL = 6;
 
+// The shapes in groups; those that are in none are listed at the end.
+const GROUPS = [
+  ["Solids", ["tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron", "prism", "antiprism"]],
+  ["Grids", ["grid", "triangle-grid", "mixed-grid", "grid-with-hole", "grid-with-holes"]],
+  ["Tilings", ["triangle-tiling", "hexagon-tiling"]],
+  ["Tori, spheres and a strip", ["torus", "triangle-torus", "genus", "uv-sphere", "geodesic", "moebius"]],
+  ["Curved patches", ["bezier-patch", "b-spline-patch"]],
+];
+
+// Small meshes that some structures cannot hold.
+const FAULTS = [
+  ["three faces at an edge", [[0, 0, 0], [0, 0, 1], [1, 0, 0], [-1, 1, 0], [-1, -1, 0]], [[0, 1, 2], [1, 0, 3], [1, 0, 4]]],
+  ["two fans at a vertex", [[0, 0, 0], [1, 1, 0], [-1, 1, 0], [1, -1, 0], [-1, -1, 0]], [[0, 1, 2], [0, 4, 3]]],
+  ["two faces that disagree on a side", [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, -1, 0]], [[0, 1, 2], [0, 1, 3]]],
+  ["a vertex without a face", [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2]]],
+  ["a face twice", [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2], [0, 2, 3]]],
+];
+
 export function openDialog(title, content) {
   find("dialog-title").textContent = title;
   find("dialog-body").replaceChildren(...content);
@@ -49,12 +67,21 @@ export function meshDialog(explorer, shapes) {
     };
     return el("li", {}, button(name, make, { "data-shape": name }), " ", fields, el("span", { class: "hint" }, ` ${summary}`));
   };
+  const fault = ([name, positions, faces]) =>
+    el("li", {}, button(name, () => choose({ mesh: { polygons: { positions, faces } } }, name), { "data-fault": name }));
+  const group = (title, entries) => el("section", {}, el("h3", {}, title), el("ul", { class: "shapes" }, entries));
   openDialog("Mesh", [
     el("p", {}, button("Open a file …", () => { close(); find("file").click(); }, { class: "main" }),
       el("span", { class: "hint" }, " or drop a file on the page: OBJ, OFF, PLY, STL, glTF, or a state that was saved. It stays on this machine.")),
     el("p", {}, el("label", {}, triangulate, " cut polygons into triangles")),
-    el("ul", { class: "shapes" }, shapes.map(entry)),
+    el("div", { class: "groups" }, [...grouped(shapes).map(([title, list]) => group(title, list.map(entry))), group("Faults", FAULTS.map(fault))]),
   ]);
+}
+
+function grouped(shapes) {
+  const others = shapes.filter(({ name }) => !GROUPS.some(([, names]) => names.includes(name)));
+  const groups = GROUPS.map(([title, names]) => [title, shapes.filter(({ name }) => names.includes(name))]);
+  return [...groups, ["From programs", others]].filter(([, list]) => list.length);
 }
 
 export async function shareDialog(explorer) {
@@ -84,9 +111,9 @@ export function helpDialog(version) {
     ["arrow keys on the mesh, 0", "turn, reset the view"],
   ];
   openDialog("Help", [
-    el("p", {}, "Six data structures hold the same mesh. Choose an element and a relation: each structure finds the answer in its own tables. The row that is read is lit, the counters show the cost. The programs are those of Sixfold: this page runs its code."),
-    el("p", {}, "A field with a * is not stored: it follows from the number of the row, or from other fields. Click the name of a structure to see its steps on the mesh. The buttons above the cards choose which structures are shown: two have room for their tables."),
-    el("p", {}, el("b", {}, "Query"), " steps through one of nine relations. ", el("b", {}, "Edit"), " changes the mesh, and shows which rows are rewritten; a structure that refuses an edit stays as it was until you undo it. ", el("b", {}, "Your walk"), " runs what you write. ", el("b", {}, "Subdivide"), " shows levels, and the weights of a point. ", el("b", {}, "Check"), " shows who refuses the mesh, and repairs it. ", el("b", {}, "Measure"), " times queries in this browser. With ", el("b", {}, "quiz"), ", click the row that is read next."),
+    el("p", {}, "Six data structures hold the same mesh. Choose an element and a relation: each structure finds the answer in its own tables. The row that is read is lit, the rows read so far come first in their tables, and the counters show the cost. The mesh turns to the element at hand; thin arrows are the fields of its row that lead on. The programs are those of Sixfold: this page runs its code."),
+    el("p", {}, "A field with a † is not stored: it follows from the number of the row, or from other fields. Click the name of a structure to see its steps on the mesh. The buttons above the cards choose which structures are shown: two have room for their tables."),
+    el("p", {}, el("b", {}, "Query"), " steps through one of nine relations. ", el("b", {}, "Edit"), " changes the mesh, and plays the rows that are rewritten from before to after; a structure that refuses an edit stays as it was until you undo it. ", el("b", {}, "Your walk"), " runs what you write. ", el("b", {}, "Subdivide"), " shows levels, and the weights of a point; v6¹ is the point v6 of level 1. ", el("b", {}, "Check"), " shows who refuses the mesh, and repairs it. ", el("b", {}, "Measure"), " times queries in this browser. With ", el("b", {}, "quiz"), ", click the row that is read next."),
     el("table", { class: "list" }, keys.map(([key, what]) => el("tr", {}, el("th", { scope: "row" }, key), el("td", {}, what)))),
     el("p", { class: "hint" }, `Sixfold ${version}. No data leaves this page.`),
   ]);

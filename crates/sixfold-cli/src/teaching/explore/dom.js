@@ -15,7 +15,7 @@ export function el(tag, properties = {}, ...children) {
 
 export const find = (id) => document.getElementById(id);
 
-// A button that runs an action.
+// A button that runs an action. `text` can be a list of texts and elements.
 export function button(text, action, properties = {}) {
   return el("button", { type: "button", onclick: action, ...properties }, text);
 }

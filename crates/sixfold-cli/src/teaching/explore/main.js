@@ -20,6 +20,8 @@ import { View } from "./view.js";
 
 // Requests that take longer can be stopped.
 const SLOW_MS = 4000;
+// Maximum number of elements of a kind in the list of elements.
+const MOST_LISTED = 500;
 const TABS_WITH_CARDS = ["query", "edit", "walk"];
 
 class Page {
@@ -109,6 +111,10 @@ class Page {
       tab.tabIndex = tab.dataset.tab === view.tab ? 0 : -1;
     }
     keepingFocus(() => find("panel").replaceChildren(...panel(explorer)));
+    for (const canvas of find("panel").querySelectorAll("[data-picture]")) {
+      const { models } = explorer.refined;
+      this.view.drawSmall(canvas, models[canvas.dataset.picture], models[0]);
+    }
     find("cards").hidden = !TABS_WITH_CARDS.includes(view.tab);
     find("chosen").hidden = !TABS_WITH_CARDS.includes(view.tab) || view.tab === "walk";
     keepingFocus(() => find("chosen").replaceChildren("shown: ", ...explorer.structures.map((name) => button(name, () => explorer.toggle(name), {
@@ -129,6 +135,23 @@ class Page {
     const suffix = explorer.view.tab === "subdivide" && explorer.refined ? levelMark(explorer.view.level) : "";
     if (this.shown !== shown || this.suffix !== suffix) this.view.show(shown, suffix);
     Object.assign(this, { shown, suffix });
+    this.listElements();
+  }
+
+  // Lists the elements, if the list is open: they can all be chosen with the keys.
+  listElements() {
+    const { shown, explorer: { view } } = this;
+    if (!find("elements").open) return;
+    const list = find("elements").querySelector("select");
+    if (this.listed !== shown) {
+      const all = [["vertices", shown.vertices, "v"], ["faces", shown.faces, "f"]].map(([title, elements, letter]) =>
+        [title, [...elements.keys()].filter((i) => elements[i]).map((i) => letter + i)]);
+      all.splice(1, 0, ["edges", [...shown.edges.keys()]]);
+      list.replaceChildren(...all.map(([title, names]) =>
+        el("optgroup", { label: title }, names.slice(0, MOST_LISTED).map((name) => el("option", { value: name }, name)))));
+    }
+    this.listed = shown;
+    list.value = view.tab === "subdivide" && view.level > 0 ? view.point ?? "" : view.element;
   }
 
   showCard(name, card) {
@@ -255,6 +278,8 @@ class Page {
         this.view.drawOverlay();
       });
     }
+    find("elements").addEventListener("toggle", () => this.listElements());
+    find("elements").addEventListener("change", (event) => this.chosen(event.target.value, false));
     find("panel").addEventListener("input", () => markPrimary(explorer, this.ranWalk));
     find("quiz").addEventListener("change", (event) => this.quiz.turn(event.target.checked));
     const open = (file) => file && explorer.run(() => openFile(explorer, file));

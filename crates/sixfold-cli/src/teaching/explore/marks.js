@@ -13,6 +13,9 @@ const MOST_MARKS = 200;
 // Maximum number of places of a fault that are marked without being asked for.
 const MOST_FAULTS = 100;
 
+// More faults are marked without their names.
+const MOST_LABELS = 16;
+
 // The marks of what the explorer shows. `rowsOf(structure)` are the rows of a card by their names.
 export function marks(explorer, rowsOf, colour) {
   const { view, picked, marked, lastEdit } = explorer;
@@ -29,7 +32,8 @@ export function marks(explorer, rowsOf, colour) {
     list.push(...writeMarks(explorer, rowsOf(view.focus), colour));
   }
   if (view.tab === "query" || view.tab === "walk") list.push(...stepMarks(explorer, rowsOf(view.focus), colour));
-  for (const name of marked.length || view.tab !== "check" ? marked : faultNames(explorer.checked)) add(name, colour("--fault"));
+  const faults = marked.length || view.tab !== "check" ? marked : faultNames(explorer);
+  for (const name of faults) add(name, colour("--fault"), faults.length <= MOST_LABELS ? name : null);
   for (const name of picked) add(name, colour("--picked"));
   if (view.tab !== "check") {
     const place = model.place(view.element);
@@ -69,10 +73,12 @@ function rowsBefore(rows, { rows: changes }) {
   return before;
 }
 
-// The elements for which structures refuse the mesh.
-function faultNames(checked) {
+// The elements for which structures refuse the mesh. If it is most of its elements, none stands out.
+function faultNames({ checked, model }) {
   const kinds = new Set(checked?.verdicts.flatMap(({ faults }) => faults));
-  const faults = checked?.faults.filter(({ kind }) => kinds.has(kind)) ?? [];
+  const all = { face: model.faceCount, edge: model.edges.size, vertex: model.vertexCount };
+  const isMost = ({ places }) => places.length > 3 && places.length > all[Object.keys(places[0])[0]] / 2;
+  const faults = checked?.faults.filter((fault) => kinds.has(fault.kind) && !isMost(fault)) ?? [];
   return faults.flatMap(({ places }) => places.slice(0, MOST_FAULTS).flatMap(namesOf));
 }
 

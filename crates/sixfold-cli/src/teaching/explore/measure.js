@@ -1,6 +1,7 @@
 // The panel of measurements: the time of a query on each structure, in this browser.
 
 import { button, el } from "./dom.js";
+import { relations } from "./query.js";
 
 const ROUNDS = 9;
 // Milliseconds of one sample: much longer than the steps of the clock of a browser.
@@ -11,11 +12,13 @@ export function measurePanel(explorer) {
   const { view: { relation }, state } = explorer;
   const measured = explorer.measured?.relation === relation && explorer.measured.subject === explorer.subject ? explorer.measured : null;
   return [
+    relations(explorer),
     el("div", { class: "grow" },
-      el("p", {}, "The time of ", el("b", {}, relation), " from one element to the next, on ", state.name, ". Choose another relation in the tab Query. ",
+      el("p", {}, "The time of ", el("b", {}, relation), " from one element to the next, on ", state.name, ". ",
         button("Measure", () => explorer.run(() => measure(explorer)), { class: "main", id: "measure" }),
         el("span", { id: "measuring", role: "status" })),
       measured ? results(measured) : null,
+      matrix(explorer),
       el("p", { class: "hint" }, `${ROUNDS} rounds, each structure once in each round, in random order; the median of each structure. `,
         "These times are those of WebAssembly in this browser on this machine. Compiled programs are faster, and other ratios are possible: ",
         el("code", {}, `sixfold study MESH --operations ${relation}`), " measures them.")),
@@ -37,6 +40,25 @@ function results({ times, refused }) {
   return el("table", { class: "list bars", id: "times" },
     el("tr", {}, ["structure", "a query", "ratio", "half of the rounds", "time, logarithmic"].map((text) => el("th", {}, text))),
     rows, refused.map(({ backend, reason }) => el("tr", {}, el("th", { scope: "row" }, backend), el("td", { colSpan: 4, class: "refusal" }, reason))));
+}
+
+// All relations that were measured on this mesh, by mesh.
+const measurements = new WeakMap();
+
+// The times of all relations measured so far, if there are several: the fastest structure of each is bold.
+function matrix({ subject, structures }) {
+  const done = [...measurements.get(subject) ?? []];
+  if (done.length < 2) return null;
+  const cell = (structure, times) => {
+    const found = times.find((one) => one.structure === structure);
+    const isFastest = found && found.ns === Math.min(...times.map(({ ns }) => ns));
+    return el("td", { class: isFastest && "fastest" }, found ? timeText(found.ns) : "–");
+  };
+  const short = (relation) => relation.split("_").map((word) => word[0].toUpperCase()).join("");
+  return el("table", { class: "list matrix", id: "measured" },
+    el("caption", {}, "measured on this mesh"),
+    el("tr", {}, el("th", {}, "structure"), done.map(([relation]) => el("th", { title: relation }, short(relation)))),
+    structures.map((structure) => el("tr", {}, el("th", { scope: "row" }, structure), done.map(([, times]) => cell(structure, times)))));
 }
 
 function timeText(ns) {
@@ -68,6 +90,8 @@ async function measure(explorer) {
     const at = (part) => sorted[Math.round(part * (sorted.length - 1))];
     return { structure, ns: at(0.5), low: at(0.25), high: at(0.75) };
   });
+  if (!measurements.has(subject)) measurements.set(subject, new Map());
+  measurements.get(subject).set(relation, times);
   explorer.measured = { relation, subject, times, refused };
   explorer.tell("all");
 }

@@ -75,7 +75,13 @@ export class Model {
       }
     }
     this.centre = this.vertexCount ? mix(low, high, 0.5) : [0, 0, 0];
-    this.radius = (this.vertexCount && length(minus(high, low)) / 2) || 1;
+    const [x, y, z] = this.centre;
+    let most = 0;
+    for (const vertex of this.vertices) {
+      if (vertex) most = Math.max(most, (vertex[0] - x) ** 2 + (vertex[1] - y) ** 2 + (vertex[2] - z) ** 2);
+    }
+    // A little room for the names.
+    this.radius = 1.06 * Math.sqrt(most) || 1;
   }
 
   // Cuts the faces into triangles: three numbers of vertices and one of a face for each.

@@ -5,6 +5,8 @@ import { EngineFailure } from "./engine.js";
 import { Model, parseName } from "./mesh.js";
 
 const MOST_LEVELS = 6;
+// Larger levels have no picture.
+const MOST_PICTURED = 9000;
 
 // The levels of each mesh, by scheme and number of levels.
 const refinements = new WeakMap();
@@ -36,7 +38,7 @@ export function subdividePanel(explorer) {
   const models = explorer.refined?.models ?? [];
   const shown = models[level];
   return [
-    el("div", { class: "grow" },
+    el("div", { class: "grow columns" }, el("section", {},
       el("p", {}, el("label", {}, "scheme ", select(explorer.schemes, scheme, (name) => look({ scheme: name, point: null }), { id: "scheme" })),
         " ", el("label", {}, "level ", el("input", {
           type: "range", min: 0, max: MOST_LEVELS, value: String(level), id: "level",
@@ -44,14 +46,23 @@ export function subdividePanel(explorer) {
         })), ` ${level}`,
         button("use this level as the mesh", () => explorer.run(() =>
           explorer.replace(explorer.refined.levels[level], `${scheme} level ${level}`, { tab: "query" })), { disabled: !shown })),
-      level > 0 && shown ? pointField(shown, point, look) : null,
       creaseForm(explorer),
       explorer.failed ? el("p", { class: "refusal" }, explorer.failed) : null,
-      shown ? levelTable(models) : null,
+      shown ? levelTable(models) : null),
+      el("section", {}, level > 0 && shown ? pointField(shown, point, look) : null,
       stencilTable(explorer.stencil, level) ?? el("p", { class: "hint" }, point === null
         ? "Click a point of a level above 0: the points of the level before that it is made of are shown with their weights."
         : "")),
+      pictures(models, level, look)),
   ];
+}
+
+// A picture of each level, which chooses it. The page draws them, as it draws the mesh.
+function pictures(models, level, look) {
+  const shown = models.map((model, i) => [model, i]).filter(([model]) => model.faceCount <= MOST_PICTURED);
+  return el("section", { class: "pictures", "aria-label": "Levels" }, shown.map(([, i]) =>
+    button([el("canvas", { "data-picture": String(i) }), `level ${i}`], () => look({ level: i, point: null }),
+      { "aria-pressed": String(i === level), "data-level": String(i) })));
 }
 
 // The level as a mark after the name of an element: v6 of level 0 and v6 of level 1 are two points.
@@ -59,7 +70,7 @@ export const levelMark = (level) => [...String(level)].map((digit) => "⁰¹²³
 
 function levelTable(models) {
   return el("table", { class: "list", id: "levels" },
-    el("tr", {}, ["level", "vertices", "edges", "faces", "V − E + F", "vertices by valence"].map((text) => el("th", {}, text))),
+    el("tr", {}, ["level", "vertices", "edges", "faces", "V\u00a0−\u00a0E\u00a0+\u00a0F", "vertices by valence"].map((text) => el("th", {}, text))),
     models.map((model, i) => {
       const [v, e, f] = [model.vertexCount, model.edges.size, model.faceCount];
       return el("tr", {}, [i, v, e, f, v - e + f].map((value) => el("td", { class: "count" }, value.toLocaleString("en"))),
@@ -80,7 +91,7 @@ function histogram(model) {
   const most = Math.max(1, ...[...counts.values()].map(({ all }) => all));
   const columns = [...counts].sort(([a], [b]) => a - b).map(([valence, { all, irregular }]) =>
     el("span", { class: irregular === all && "irregular", title: `${count(all, "vertex")} of valence ${valence}, ${irregular.toLocaleString("en")} of them irregular` },
-      el("b", {}, all.toLocaleString("en")), el("i", { style: `height: ${Math.max(2, Math.round((22 * all) / most))}px` }), `${valence}`));
+      el("b", {}, all.toLocaleString("en")), el("i", { style: `height: ${Math.max(2, Math.round((40 * all) / most))}px` }), `${valence}`));
   return el("div", { class: "histogram" }, columns);
 }
 

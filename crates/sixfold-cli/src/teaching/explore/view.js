@@ -14,6 +14,8 @@ const EYE = 4.2;
 // The time of a turn to an element, and the angle from its normal at which it is seen then.
 const TURN_MS = 300;
 const ASLANT = 0.3;
+// A mesh with more triangles is not turned: to find out what hides an element would take too long.
+const MOST_TURNED = 60000;
 
 export class View {
   // `onChoose(name, more)` is called with the element that is clicked; `more` if Shift is pressed.
@@ -113,6 +115,14 @@ export class View {
     this.ratio = ratio;
   }
 
+  // Draws another mesh on a small canvas, from the same side, so that a third one would fill the canvas.
+  drawSmall(canvas, model, { centre, radius }) {
+    const size = [canvas.clientWidth, canvas.clientHeight];
+    if (size[0] < 2) return;
+    const small = Object.assign(Object.create(this), { canvas, model, size, centre, radius, raster: new Raster(), shades: null, zoom: 0.9, shift: [0, 0] });
+    small.drawMesh();
+  }
+
   // The colours of both sides of each face: light comes from the eye's left shoulder.
   lit(front, back) {
     const light = [-0.35, 0.5, 0.8].map((part) => part / Math.hypot(0.35, 0.5, 0.8));
@@ -178,10 +188,12 @@ export class View {
     pen.clearRect(0, 0, width, height);
     pen.lineCap = pen.lineJoin = "round";
     const labels = [];
-    for (const mark of [...this.valenceMarks(), ...this.marks]) {
-      if (!mark.place) continue;
-      this.drawMark(pen, mark);
-      if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: true, ...(mark.style === "thin" && thinLabel(mark.place)) });
+    const placed = [...this.valenceMarks(), ...this.marks].filter(({ place }) => place);
+    // Faces are below what lies in them.
+    const isBelow = ({ style }) => style === "fill";
+    for (const mark of [...placed.filter(isBelow), ...placed.filter((mark) => !isBelow(mark))]) this.drawMark(pen, mark);
+    for (const mark of placed) {
+      if (mark.label) labels.push({ text: mark.label, at: mark.place.at, isStrong: !mark.isFaint, ...(mark.style === "thin" && thinLabel(mark.place)) });
     }
     labels.sort((a, b) => Number(a.isThin ?? false) - Number(b.isThin ?? false));
     this.drawLabels(pen, [...labels, ...this.ownNames()]);
@@ -238,7 +250,7 @@ export class View {
     const irregular = [...model.vertices.keys()].filter((v) => model.valences[v]?.isIrregular).slice(0, MOST_DOTS);
     const isNamed = model.vertexCount > MOST_NAMES && irregular.length <= MOST_NAMES;
     return irregular.map((v) => ({
-      place: model.place(`v${v}`), colour, style: "dot", label: isNamed ? this.vertexLabel(v) : null,
+      place: model.place(`v${v}`), colour, style: "dot", label: isNamed ? this.vertexLabel(v) : null, isFaint: true,
     }));
   }
 
@@ -391,7 +403,7 @@ export class View {
   // Turns the mesh so that a place can be seen, if the mesh hides it and the reader does not turn the mesh.
   turnTo({ at }) {
     const { model } = this;
-    if (this.isTurning || !model) return;
+    if (this.isTurning || !model || model.triangles.length > 4 * MOST_TURNED) return;
     const now = unit(this.turn.slice(6));
     const eye = (way) => plus(this.centre, scale(way, EYE * this.radius));
     if (model.isFree(at, eye(now))) return;
