@@ -11,6 +11,9 @@ use crate::error::ExplainError;
 use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::{Inference, Reason};
 
+/// In a longer trace, reads of consecutive rows are one step if they have the same way, also without a scan.
+const MOST_SINGLE_STEPS: usize = 10_000;
+
 /// Bytes of a cache line.
 const LINE_BYTES: usize = 64;
 
@@ -68,7 +71,8 @@ pub enum Step {
     },
 }
 
-/// A read of a row, or of several rows in order that a scan reads for the same reason.
+/// A read of a row, or of several rows in order that a scan reads for the same reason. After the first 10,000
+/// steps of a trace also of other rows in order that are read in the same way, such as the corners of a face.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Read {
     /// The name of the table.
@@ -302,7 +306,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// Adds a read. The rows of a scan become one step.
+    /// Adds a read. The rows of a scan become one step, and in a long trace also other rows in order.
     fn push_read(
         &mut self,
         table: RecordTable,
@@ -316,6 +320,17 @@ impl Recorder<'_> {
             && last.reason.way == Line::SCAN
             && last.table == table.name
             && row > 0
+        {
+            last.rows += 1;
+            last.fields.clear();
+            return;
+        }
+        let follows = (self.reads.last())
+            .is_some_and(|read| read.table == table.name && read.rows.end == row);
+        if self.steps.len() >= MOST_SINGLE_STEPS
+            && follows
+            && let Some(Step::Read(last)) = self.steps.last_mut()
+            && last.reason.way == reason.way
         {
             last.rows += 1;
             last.fields.clear();

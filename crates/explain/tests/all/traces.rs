@@ -391,3 +391,39 @@ fn a_planted_fault_is_found() {
     let other_result = found(|trace| trace.results.swap(0, 1));
     assert!(other_result.contains("results"), "{other_result}");
 }
+
+/// A query at a polygon of many corners reads them all: after many steps, those in order are one step.
+#[test]
+fn long_traces_have_few_steps() {
+    let prism = shapes::prism(20_000).expect("a prism");
+    let query = "v0".parse().expect("a name");
+    let mut longest = 0;
+    for structure in Structure::all() {
+        let Ok(mesh) = structure.build(&prism) else {
+            continue;
+        };
+        let trace = mesh.trace(Relation::VertexVertices, query).expect("v0");
+        let rows = trace.steps.iter().map(|step| match step {
+            Step::Read(read) => {
+                assert_eq!(read.fields.is_empty(), read.rows > 1, "{read:?}");
+                read.rows
+            }
+            Step::Yield { .. } => 0,
+        });
+        assert_eq!(
+            rows.sum::<usize>(),
+            trace.cost.reads,
+            "{}",
+            structure.name()
+        );
+        assert!(
+            trace.steps.len() < 10_050,
+            "{}: {} steps",
+            structure.name(),
+            trace.steps.len()
+        );
+        longest = longest.max(trace.steps.len());
+        assert_eq!(trace.results.len(), 3);
+    }
+    assert!(longest > 10_000);
+}
