@@ -662,12 +662,29 @@ def check_links(page, path):
     check(page.text("#mesh-name") == "octahedron", "a state that is opened can be undone")
 
 
-def check_quiz(page, path):
+def predict(page, *values):
+    """Fills the fields of a prediction, and checks it. Returns the verdicts."""
+    page.browser.run("""
+        const fields = [...document.querySelectorAll("#predict .ask input.number, #predict .ask select, #predict .ask fieldset")];
+        arguments[0].forEach((value, i) => {
+            if (Array.isArray(value)) for (const box of fields[i].querySelectorAll("input")) box.checked = value.includes(box.value);
+            else if (value !== null) fields[i].value = String(value);
+        });
+    """, list(values))
+    page.click("#predict-check")
+    return page.browser.run("return [...document.querySelectorAll('#verdict li')].map((one) => one.textContent)")
+
+
+def check_predictions(page, path):
+    """Queries, edits, levels and refusals are predicted before they are shown; the native engine knows what is right."""
+    octahedron = {"mesh": {"shape": {"name": "octahedron"}}}
     page.open(path)
     page.click("#quiz")
     check(page.browser.run("return document.getElementById('next').disabled"), "the next step is not hidden")
-    native = page.native(mesh={"shape": {"name": "octahedron"}}, structures=["half-edge"], ask={"trace": {"relation": "vertex_vertices", "element": "v0"}})
+    native = page.native(**octahedron, structures=["half-edge"], ask={"trace": {"relation": "vertex_vertices", "element": "v0"}})
     reads = [step["row"] for step in native["answers"][0]["steps"] if step["step"] == "read"]
+    check(predict(page) == [] and "Answer this first: rows read" in page.text("#predict-say"))
+    check(predict(page, len(reads) + 1) == [f"✗ rows read: you {len(reads) + 1}, it is {len(reads)}"], page.text("#predict"))
     row = ".card[data-structure=half-edge] tr[data-row={}] th"
     page.click(row.format("h9"))
     check(page.text("#quiz-line").startswith("Not h9"), page.text("#quiz-line"))
@@ -675,6 +692,61 @@ def check_quiz(page, path):
         page.click(row.format(name))
         check(page.text("#quiz-line").startswith(f"Right: {name}"), page.text("#quiz-line"))
     check(f"{len(reads) - 1} right at once, 1 wrong" in page.text("#quiz-line"), page.text("#quiz-line"))
+    for relation in ("vertex_faces", "vertex_edges"):
+        page.click(f"[data-relation={relation}]")
+        native = page.native(**octahedron, structures=["half-edge"], ask={"trace": {"relation": relation, "element": "v0"}})
+        reads = native["answers"][0]["reads"]
+        check(predict(page, reads) == [f"✓ rows read: {reads}"], relation, page.text("#predict"))
+    page.click("#predict-show")
+    check(not page.browser.run("return document.getElementById('next').disabled"), "the steps are shown")
+    check_predicted_edits(page, octahedron)
+    # A step of subdivision.
+    page.open(path)
+    page.click("#quiz")
+    page.click("[data-tab=subdivide]")
+    page.type("#level", 0)
+    levels = page.native(**octahedron, ask={"subdivide": {"scheme": "loop", "levels": 1}})["levels"][1]
+    edges = {tuple(sorted(pair)) for face in levels["faces"] for pair in zip(face, face[1:] + face[:1])}
+    counts = [len(levels["vertices"]), len(edges), len(levels["faces"])]
+    verdict = predict(page, *counts, 7)
+    check([one[0] for one in verdict] == ["✓", "✓", "✓", "✗"] and "irregular vertices: you 7, it is 6" in verdict[3], verdict)
+    check(page.browser.run("return document.getElementById('level').value") == "1")
+    # A mesh that structures refuse.
+    page.open(path)
+    page.click("#quiz")
+    drop(page, "book.obj", b"v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 2 1 4\nf 1 2 5\n")
+    page.click("[data-tab=check]")
+    check(page.text("#verdicts") == "", "the verdicts are shown")
+    verdict = predict(page, STRUCTURES[3:])
+    check(verdict == [f"✓ these structures refuse the mesh: {', '.join(STRUCTURES[3:])}"] and page.text("#verdicts"), verdict)
+
+
+def check_predicted_edits(page, octahedron):
+    """An edit waits until it is predicted, cell by cell."""
+    page.edit("flip_edge v0-v2")
+    check(page.text("#edit-result") == "" and "flip_edge v0-v2 on half-edge" in page.text("#predict"), page.text("#predict"))
+    [native] = page.native(**octahedron, structures=["half-edge"], ask={"edit": "flip_edge v0-v2"})["answers"]
+    for change in native["rows"]:
+        for i, (before, after) in enumerate(zip(change["before"], change["after"])):
+            if before != after:
+                page.browser.run("""
+                    const cells = [...document.querySelectorAll(`.card[data-structure=half-edge] tr[data-row=${arguments[0]}] td:not(.derived)`)];
+                    const stored = cells.length > arguments[2] ? cells.slice(-arguments[2]) : cells;
+                    stored[arguments[1]].click();
+                """, change["row"], i, len(change["before"]))
+    after = native["after"]
+    verdict = predict(page, "done", None, native["changed"], after["vertices"], after["edges"], after["faces"] + 1)
+    check(verdict[0] == "✓ flip_edge v0-v2 on half-edge" and any(one.startswith("✓ cells marked: all") for one in verdict), verdict)
+    check([one for one in verdict if one[0] == "✗"] == [f"✗ F after: you {after['faces'] + 1}, it is {after['faces']}"], verdict)
+    check("flip_edge v0-v2" in page.text("#edit-result"), page.text("#edit-result"))
+    page.edit("collapse_edge v0-v2 v0")
+    page.click("#predict-cancel")
+    check("Choose the next edit" in page.text("#predict"), page.text("#predict"))
+    tetrahedron = {"sixfold": 1, "subject": {"mesh": {"shape": {"name": "tetrahedron"}}}, "name": "tetrahedron", "edits": [], "view": {"tab": "edit", "quiz": True}}
+    drop(page, "state.json", json.dumps(tetrahedron).encode())
+    page.edit("flip_edge v0-v1")
+    verdict = predict(page, "refused", "a vertex would keep too few edges")
+    check([one[0] for one in verdict] == ["✓", "✓", "✓"] and "only three edges" in verdict[0], verdict)
 
 
 def check_walks(page, path):
@@ -1090,7 +1162,7 @@ def main():
         try:
             page = Page(browser, sixfold, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
-            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_elements, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_quiz,
+            for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_elements, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_predictions,
                          check_walks, check_measurements, check_levels, check_regularity, check_layout, check_contrast, check_lessons):
                 part(page, path)
                 check_quiet(browser)

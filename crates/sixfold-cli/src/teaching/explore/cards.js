@@ -39,10 +39,13 @@ export class Card {
     this.tables.addEventListener("click", (event) => {
       const row = event.target.closest("tr[data-row]");
       if (row) events.clickRow(structure, row.dataset.row);
+      if (row && event.target.closest("td")) events.clickCell(structure, event.target.closest("td"));
     });
     this.tables.addEventListener("keydown", (event) => {
       const row = event.target.closest("tr[data-row]");
-      if (row && event.key === "Enter") events.clickRow(structure, row.dataset.row);
+      if (!row || event.key !== "Enter") return;
+      events.clickRow(structure, row.dataset.row);
+      if (event.target.closest("td")) events.clickCell(structure, event.target.closest("td"));
     });
     this.rows = new Rows();
     this.changes = new Map();

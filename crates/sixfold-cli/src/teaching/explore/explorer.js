@@ -70,6 +70,8 @@ export class Explorer {
     for (const key of ["lesson", "quiz", "focus", "walk"]) {
       if (this.view[key] !== begun[key]) shown.view[key] = this.view[key];
     }
+    // A reader who predicts goes on with the next mesh.
+    shown.view.quiz ||= this.view.quiz;
     const picked = this.picked.filter((name) => shown.model.has(name));
     Object.assign(this, shown, { picked, marked: [], isRefused: false });
     // An edit is shown as it is at its end.
@@ -167,6 +169,11 @@ export class Explorer {
     const isAtEnd = this.view.time >= this.length;
     this.view.focus = structure;
     if (this.view.tab === "edit") this.view.time = isAtEnd ? this.length : Math.min(this.view.time, this.length);
+  }
+
+  // Whether the reader predicts first, and what is shown is not known yet. `revealed` is the state for which it is.
+  get isPredicting() {
+    return this.view.quiz && this.revealed !== this.state;
   }
 
   get length() {
@@ -271,8 +278,14 @@ export class Explorer {
   }
 
   // Runs an edit on all structures that hold the mesh and have not stopped.
+  // If the reader predicts first, the edit waits for that.
   async edit(text) {
     const { state } = this;
+    if (this.isPredicting) {
+      this.pending = text;
+      await this.look({ tab: "edit" });
+      return;
+    }
     const structures = this.structures.filter((structure) =>
       state.stopped[structure] === undefined && this.records.has(structure));
     const done = await this.askEdit(state, structures, text);

@@ -11,7 +11,7 @@ import { lessonView } from "./lesson.js";
 import { drawnModel, marks } from "./marks.js";
 import { markPrimary, panel } from "./panels.js";
 import { Player } from "./player.js";
-import { Quiz } from "./quiz.js";
+import { Predictions } from "./predict.js";
 import { Race } from "./race.js";
 import { defaultView, fromLink, fromText, meshState } from "./state.js";
 import { Store } from "./store.js";
@@ -29,11 +29,13 @@ class Page {
     this.explorer = explorer;
     this.data = data;
     this.store = store;
-    this.quiz = new Quiz(explorer);
+    this.predictions = new Predictions(explorer);
+    this.predictions.cardOf = (structure) => this.cards.get(structure);
     this.view = new View(find("faces"), find("overlay"), (name, more) => this.chosen(name, more));
     this.cards = new Map(data.structures.map(({ name }) => [name, new Card(name, {
       focus: (structure) => this.focus(structure),
-      clickRow: (structure, row) => this.quiz.answer(structure, row),
+      clickRow: (structure, row) => this.predictions.answer(structure, row),
+      clickCell: (structure, cell) => this.predictions.guess(structure, cell),
     })]));
     find("cards").append(...[...this.cards.values()].map((card) => card.element));
     this.race = new Race(explorer);
@@ -58,7 +60,7 @@ class Page {
     else {
       explorer.bringToFront(structure);
       explorer.tell("time");
-      if (explorer.view.quiz) this.quiz.turn(true);
+      if (explorer.view.quiz) explorer.tell("all");
     }
   }
 
@@ -281,7 +283,7 @@ class Page {
     find("elements").addEventListener("toggle", () => this.listElements());
     find("elements").addEventListener("change", (event) => this.chosen(event.target.value, false));
     find("panel").addEventListener("input", () => markPrimary(explorer, this.ranWalk));
-    find("quiz").addEventListener("change", (event) => this.quiz.turn(event.target.checked));
+    find("quiz").addEventListener("change", (event) => this.predictions.turn(event.target.checked));
     const open = (file) => file && explorer.run(() => openFile(explorer, file));
     find("file").addEventListener("change", (event) => {
       open(event.target.files[0]);

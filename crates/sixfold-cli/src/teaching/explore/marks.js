@@ -32,7 +32,7 @@ export function marks(explorer, rowsOf, colour) {
     list.push(...writeMarks(explorer, rowsOf(view.focus), colour));
   }
   if (view.tab === "query" || view.tab === "walk") list.push(...stepMarks(explorer, rowsOf(view.focus), colour));
-  const faults = marked.length || view.tab !== "check" ? marked : faultNames(explorer);
+  const faults = marked.length || view.tab !== "check" || explorer.isPredicting ? marked : faultNames(explorer);
   for (const name of faults) add(name, colour("--fault"), faults.length <= MOST_LABELS ? name : null);
   for (const name of picked) add(name, colour("--picked"));
   if (view.tab !== "check") {

@@ -39,7 +39,7 @@ const SCRIPTS: [&str; 27] = [
     include_str!("explorer.js"),
     include_str!("player.js"),
     include_str!("race.js"),
-    include_str!("quiz.js"),
+    include_str!("predict.js"),
     include_str!("lesson.js"),
     include_str!("dialogs.js"),
     include_str!("main.js"),

@@ -24,7 +24,8 @@ const PRIMARY = ["#next", "#play", "#run-walk", "#edits button", "[data-repair]"
 function nextButton(explorer, ranWalk) {
   const { view, length, checked } = explorer;
   const step = view.time < length ? "#next" : null;
-  if (view.tab === "query") return view.quiz ? null : step;
+  if (view.tab === "query") return explorer.isPredicting ? null : step;
+  if (explorer.isPredicting && (view.tab !== "edit" || explorer.pending)) return null;
   if (view.tab === "edit") return step ?? (length ? "#play" : "#edits button");
   if (view.tab === "walk" && view.walk.trim()) return view.walk === ranWalk && !explorer.failed ? step : "#run-walk";
   return view.tab === "check" && !checked?.repair ? "[data-repair]" : null;
@@ -39,5 +40,7 @@ export function markPrimary(explorer, ranWalk) {
 
 // The elements of the panel of the current tab.
 export function panel(explorer) {
+  // What is to be predicted is not shown before.
+  if (explorer.view.tab === "check" && explorer.isPredicting) return [];
   return PANELS[explorer.view.tab](explorer).filter((part) => part);
 }

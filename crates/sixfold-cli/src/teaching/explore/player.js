@@ -22,14 +22,14 @@ export class Player {
   }
 
   get isQuiz() {
-    return this.explorer.view.quiz && this.explorer.view.tab !== "edit";
+    return this.explorer.isPredicting && this.explorer.view.tab !== "edit";
   }
 
   to(time) {
     this.explorer.set({ time: Math.max(0, Math.min(this.explorer.length, time)) });
   }
 
-  // In the quiz, the next step comes after the right answer.
+  // When the reader predicts, the next step comes after the right answer.
   forward() {
     if (!this.isQuiz) this.to(this.explorer.view.time + 1);
   }
