@@ -167,14 +167,17 @@ const LESSONS_EXAMPLES: &str = "Examples:
   sixfold lessons half-edge                 a chapter about one structure
   sixfold lessons --export course           the whole course as a site, with the explorer
   sixfold lessons --markdown guide          the whole guide as Markdown, with pictures
+  sixfold lessons --check *.json --csv class.csv
+      grade the answers of a class
 
-Exit codes: 0 success; 2 wrong usage.";
+Exit codes: 0 success; 1 not all answers could be graded; 2 wrong usage.";
 
 /// Learn how the structures work: short lessons with questions.
 ///
-/// Each lesson shows meshes and commands, asks questions, waits for your answer, and shows its own. A chapter
+/// Each lesson shows meshes and commands, asks questions, checks your answer, and shows its own. A chapter
 /// describes one structure: records, invariants, and the costs of queries and edits. Without a name, the
-/// command lists the lessons and the chapters.
+/// command lists the lessons and the chapters. The page of `sixfold explore` runs the same lessons, and saves
+/// the answers of a student as a file.
 #[derive(Debug, Args)]
 #[command(after_help = LESSONS_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Lessons {
