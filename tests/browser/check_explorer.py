@@ -642,10 +642,19 @@ def check_links(page, path):
     drop(page, "state.json", json.dumps(state).encode())
     check(page.text("#mesh-name") == "mine", page.text("#message"))
     check(page.browser.run("return document.getElementById('element').value") == "f3", "the element of a state file")
-    for link, message in [("#s=AAAA", "damaged"), ("#s=!", "damaged"), ("#what", "not known"), ("#lesson=flap", "no lesson flap"), ("#show=flip/9", "number 9")]:
+    for link, message in [("#s=AAAA", "damaged"), ("#s=!", "damaged"), ("#what", "not known"), ("#lesson=flap", "no lesson flap"), ("#show=flip/9", "number 9"), ("#show=flip/1&only=all", "not known"), ("#show=flip/9&only=cards", "number 9")]:
         page.open(path, link)
         check(message in page.text("#message"), link, page.text("#message"))
         check(page.text("#mesh-name") == "octahedron", link, page.text("#mesh-name"))
+    # One part alone.
+    for only, shown, hidden in (("cards", "#cards", "#view"), ("mesh", "#view", "#cards")):
+        page.open(path, f"#show=flip/1&only={only}")
+        visible = "return ['header', 'nav', '#panel', '#race', arguments[0], arguments[1], '#player'].map(one => document.querySelector(one).getClientRects().length > 0)"
+        check(page.browser.run(visible, hidden, shown) == [False] * 5 + [True] * 2, only, page.browser.run(visible, hidden, shown))
+        check(page.browser.run("return document.documentElement.scrollWidth <= innerWidth"), only, "is wider than the page")
+        page.click("#next")
+        check(page.browser.run("return localStorage.getItem('sixfold-explorer')") is None, only, "is kept")
+    page.open(path)
     # A state that is not one changes nothing.
     page.edit("flip_edge v0-v2")
     cube = {"mesh": {"shape": {"name": "cube"}}}

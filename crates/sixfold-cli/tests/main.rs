@@ -4,6 +4,7 @@ mod bad_input;
 mod changes;
 mod comparing;
 mod confidence;
+mod course;
 mod distance;
 mod explore;
 mod external;

@@ -14,7 +14,7 @@ use crate::output::{Output, cannot_write, check_outputs};
 use crate::teaching::lessons::LESSONS;
 use crate::text::{TextOutput, print_stderr, sanitize};
 
-pub(crate) use page::{LESSONS_DATA, page};
+pub(crate) use page::{COLOURS, LESSONS_DATA, page};
 pub(crate) use situation::Situation;
 
 pub(crate) fn run(arguments: &Explore) -> Result<ExitCode, Failure> {

@@ -8,6 +8,7 @@ mod answers;
 mod command;
 mod data;
 mod grades;
+mod html;
 mod page;
 mod site;
 mod source;
@@ -49,6 +50,9 @@ pub(crate) const LESSONS: [(&str, &str); 21] = [
     ("exercises", include_str!("lessons/exercises.md")),
     ("lab", include_str!("lessons/lab.md")),
 ];
+
+/// The lessons that are handed out: one page is the sheet without answers, another has the solutions.
+const SHEETS: [&str; 1] = ["lab"];
 
 /// The first page of the guide.
 const CONTENTS: &str = include_str!("guide/README.md");

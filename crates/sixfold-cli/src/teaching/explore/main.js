@@ -301,8 +301,10 @@ class Page {
       explorer.run(() => (event.shiftKey ? explorer.redo() : explorer.undo()));
     });
     window.addEventListener("hashchange", () => explorer.run(async () => {
-      const situation = await situationOf(location.hash, this.data.lessons);
+      const [hash, only] = partsOf(location.hash);
+      const situation = await situationOf(hash, this.data.lessons);
       if (!situation) return;
+      showOnly(only ?? document.documentElement.dataset.only);
       // The same link can be followed again.
       history.replaceState(null, "", "#");
       await explorer.open(situation);
@@ -332,6 +334,23 @@ function refusalText(refusals, byAll) {
   return texts.length ? `refused by ${texts.join("; by ")}` : "";
 }
 
+// The part of a link after #, without &only=PART at its end, and the name of this part.
+function partsOf(hash) {
+  const [, rest, only] = /^(.*?)(?:&only=(cards|mesh))?$/s.exec(hash);
+  return [rest, only];
+}
+
+// Shows one part of the page alone, for a frame in another page, which is told the height that the part needs.
+function showOnly(only) {
+  const root = document.documentElement;
+  if (!only || root.dataset.only === only) return;
+  const isFirst = !root.dataset.only;
+  root.dataset.only = only;
+  if (isFirst && parent !== window) {
+    new ResizeObserver(() => parent.postMessage({ sixfold: "height", height: document.body.offsetHeight }, "*")).observe(document.body);
+  }
+}
+
 // What the part of a link after # shows: a state, a lesson (#lesson=flip), or what a lesson shows with its command of a
 // number (#show=flip/1). Null if it names nothing.
 async function situationOf(hash, lessons) {
@@ -357,16 +376,19 @@ async function start() {
   const store = new Store(explorer, data.situation);
   const kept = store.read();
   explorer.course = kept.course;
+  const [hash, only] = partsOf(location.hash);
+  showOnly(only);
   new Page(explorer, data, store);
   const own = data.situation ? fromText(JSON.stringify(data.situation)) : defaultSituation();
-  await explorer.run(async () => explorer.open((await situationOf(location.hash, data.lessons)) ?? (kept.state ? fromText(kept.state) : own)));
+  await explorer.run(async () => explorer.open((await situationOf(hash, data.lessons)) ?? (kept.state ? fromText(kept.state) : own)));
   if (!explorer.state) {
     const { message } = explorer;
     await explorer.run(() => explorer.open(own));
     if (explorer.state) Object.assign(explorer, { message });
     explorer.tell("busy");
   }
-  store.keep();
+  // A part in another page does not replace the mesh that the whole page keeps.
+  if (!only) store.keep();
   document.documentElement.dataset.ready = "yes";
   performance.mark("ready");
 }

@@ -8,6 +8,8 @@ use sixfold_report::structure_colours;
 use super::Situation;
 
 const PAGE: &str = include_str!("page.html");
+/// The colours, light and dark, which the pages of a course have, too.
+pub(crate) const COLOURS: &str = include_str!("colours.css");
 const STYLE: &str = include_str!("style.css");
 /// The lessons with the outputs of their commands, written by `sixfold lessons --json`.
 pub(crate) const LESSONS_DATA: &str = include_str!("lessons.json");
@@ -50,7 +52,7 @@ pub(crate) fn page(situation: &Situation) -> String {
     use base64::Engine as _;
     let engine = base64::engine::general_purpose::STANDARD.encode(ENGINE);
     let parts = [
-        ("style", format!("{STYLE}{}", colour_rules())),
+        ("style", format!("{COLOURS}{STYLE}{}", colour_rules())),
         ("script", script()),
         ("data", data(situation)),
         ("engine", engine),

@@ -5,23 +5,48 @@ use std::fs;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use pulldown_cmark::{CowStr, Event, LinkType, Options, Parser, Tag, TagEnd};
+use serde_json::Value;
 
 use super::command::write_file;
-use super::page::page;
+use super::html::{file_of, pages, to_html};
+use super::page::{Form, page, pages_of, title_of};
 use super::source::{read, with_parts};
-use super::{CHAPTERS, CONTENTS, LESSONS};
+use super::{CHAPTERS, CONTENTS, LESSONS, SHEETS};
 use crate::failure::Failure;
 use crate::output::cannot_write;
-use crate::teaching::explore::{self, Situation};
+use crate::teaching::explore::{self, COLOURS, LESSONS_DATA, Situation};
 
-const STYLE: &str = "\
-:root{color-scheme:light dark;--line:#8885}body{margin:0;font:16px/1.5 system-ui,sans-serif}\
-main{max-width:62rem;margin:auto;padding:0 1rem 3rem}body.lesson{display:flex;height:100vh}\
-body.lesson main{flex:0 1 34rem;overflow:auto;margin:0}body.lesson iframe{flex:1;border:0;border-left:1px solid var(--line)}\
-pre{overflow-x:auto;padding:.5rem;border:1px solid var(--line);font-size:.82rem}table{border-collapse:collapse}\
-td,th{padding:.15rem .7rem;border-bottom:1px solid var(--line);text-align:left}img{max-width:100%;background:#fff}\
-@media(max-width:60rem){body.lesson{display:block;height:auto}body.lesson iframe{display:none}}";
+const STYLE: &str = include_str!("site.css");
+/// Shows the progress that the explorer keeps in the local storage, and opens the explorer on narrow screens.
+const SCRIPT: &str = include_str!("site.js");
+
+/// The texts of the licences, as files of the site.
+const LICENCES: [(&str, &str); 2] = [
+    (
+        "LICENSE-MIT.txt",
+        include_str!("../../../../../LICENSE-MIT"),
+    ),
+    (
+        "LICENSE-APACHE.txt",
+        include_str!("../../../../../LICENSE-APACHE"),
+    ),
+];
+
+/// Where a page is on the site.
+#[derive(Clone, Copy)]
+enum Place {
+    Guide,
+    Lessons,
+}
+
+/// A page of the site.
+struct Document<'d> {
+    title: &'d str,
+    place: Place,
+    /// The part of the address of the explorer after `#`, if the explorer is beside the page.
+    explorer: Option<String>,
+    content: Markup,
+}
 
 /// Writes the site to `folder`: `index.html`, the chapters, the lessons and the explorer.
 pub(super) fn write(folder: &Path) -> Result<(), Failure> {
@@ -33,56 +58,80 @@ pub(super) fn write(folder: &Path) -> Result<(), Failure> {
         "explorer.html",
         &explore::page(&Situation::default()),
     )?;
+    for (name, text) in LICENCES {
+        write_file(folder, name, text)?;
+    }
     let pages = pages();
     for (name, source) in std::iter::once(("README", CONTENTS)).chain(CHAPTERS) {
         let source = with_parts(source);
         let chapter = read(&source);
-        let markdown = page(folder, &chapter, |_, _| None)?;
-        let content = to_html(&markdown, &pages);
-        let page = document(
-            chapter.title,
-            None,
-            html! {
-                @if name != "README" { p { a href="index.html" { "The guide" } } }
-                (content)
-                @if name == "README" { p { a href="explorer.html" { "The explorer" } } }
-            },
-        );
-        write_file(folder, &file_of(name), &page)?;
+        let markdown = page(folder, &chapter, Form::Full, |_, _| None)?;
+        let document = Document {
+            title: chapter.title,
+            place: Place::Guide,
+            explorer: None,
+            content: to_html(&markdown, &pages),
+        };
+        write_file(folder, &file_of(name), &document.to_html())?;
     }
-    let list = html! {
-        p { a href="../index.html" { "The guide" } }
-        h1 { "Lessons" }
-        ol {
-            @for (name, source) in LESSONS {
-                li { a href=(file_of(name)) { (read(source).title) } }
-            }
-        }
+    let document = Document {
+        title: "Lessons",
+        place: Place::Lessons,
+        explorer: None,
+        content: list_of_lessons(),
     };
-    write_file(&lessons, "index.html", &document("Lessons", None, list))?;
+    write_file(&lessons, "index.html", &document.to_html())?;
     for (i, (name, source)) in LESSONS.iter().enumerate() {
-        write_lesson(
-            &lessons,
-            name,
-            source,
-            LESSONS.get(i + 1).map(|(next, _)| *next),
-            &pages,
-        )?;
+        for (file, form) in pages_of(name) {
+            write_lesson(&lessons, &file, form, i, source, &pages)?;
+        }
     }
     Ok(())
 }
 
-/// Writes a lesson with the explorer, which shows what the commands of the lesson show.
+/// Returns the list of the lessons. A sheet is in the list, and its solutions are not.
+fn list_of_lessons() -> Markup {
+    html! {
+        h1 { "Lessons" }
+        p {
+            "In the order of a course; each takes 10 to 20 minutes. The explorer beside a lesson shows what its commands print, and checks \
+             your answers."
+        }
+        ol class="lessons" {
+            @for (name, source) in LESSONS {
+                li {
+                    a href=(file_of(name)) { (read(source).title) }
+                    @if SHEETS.contains(&name) { " (a sheet to print)" }
+                    " " (progress(name))
+                }
+            }
+        }
+    }
+}
+
+/// Returns the place where the script shows how many questions of a lesson are answered.
+fn progress(lesson: &str) -> Markup {
+    let lessons: Vec<Value> = serde_json::from_str(LESSONS_DATA).expect("lessons.json is JSON");
+    let found = lessons.iter().find(|one| one["name"] == lesson);
+    let parts = found.and_then(|one| one["parts"].as_array());
+    let questions = parts.into_iter().flatten();
+    let ids: Vec<&str> = questions.filter_map(|part| part["id"].as_str()).collect();
+    html! { span class="progress" data-questions=(ids.join(" ")) {} }
+}
+
+/// Writes a page of the lesson of a number, with the explorer, which shows what the commands of the lesson show.
 fn write_lesson(
     folder: &Path,
-    name: &str,
+    file: &str,
+    form: Form,
+    number: usize,
     source: &str,
-    next: Option<&str>,
     pages: &BTreeSet<String>,
 ) -> Result<(), Failure> {
     let lesson = read(source);
+    let name = LESSONS[number].0;
     let mut shown = 0;
-    let markdown = page(folder, &lesson, |line, files| {
+    let markdown = page(folder, &lesson, form, |line, files| {
         Situation::of_command(line, files)?;
         shown += 1;
         Some(format!(
@@ -93,131 +142,88 @@ fn write_lesson(
         0 => String::new(),
         _ => format!("#show={name}/1"),
     };
+    let next = LESSONS.get(number + 1);
     let content = html! {
-        p { a href="index.html" { "All lessons" } }
+        p class="where" {
+            "Lesson " (number + 1) " of " (LESSONS.len()) " " (progress(name)) " "
+            a href={ "../explorer.html#lesson=" (name) } { "Answer the questions in the explorer" }
+        }
         (to_html(&markdown, pages))
-        @if let Some(next) = next { p { a href=(file_of(next)) { "The next lesson" } } }
+        @if let Some((next, source)) = next {
+            p class="next" { "Next: " a href=(file_of(next)) { (read(source).title) } }
+        }
     };
-    let page = document(
-        lesson.title,
-        Some(&format!("../explorer.html{first}")),
+    let title = title_of(&lesson, form);
+    let document = Document {
+        title: &title,
+        place: Place::Lessons,
+        explorer: Some(first),
         content,
-    );
-    write_file(folder, &file_of(name), &page)
+    };
+    write_file(folder, &file_of(file), &document.to_html())
 }
 
-/// Returns the page of a chapter or lesson. `explorer` is the address of the explorer beside it.
-fn document(title: &str, explorer: Option<&str>, content: Markup) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width,initial-scale=1";
-                link rel="icon" href="data:,";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
+impl Document<'_> {
+    fn to_html(&self) -> String {
+        let root = match self.place {
+            Place::Guide => "",
+            Place::Lessons => "../",
+        };
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width,initial-scale=1";
+                    link rel="icon" href="data:,";
+                    title { (self.title) " · Sixfold" }
+                    style { (PreEscaped(COLOURS)) (PreEscaped(STYLE)) }
+                }
+                body class=[self.explorer.as_ref().map(|_| "lesson")] {
+                    (self.header(root))
+                    main {
+                        (self.content)
+                        (footer(root))
+                    }
+                    @if let Some(shown) = &self.explorer {
+                        section id="explorer" aria-label="Explorer" {
+                            button type="button" { "Open the explorer here" }
+                            iframe name="explorer" title="Sixfold explorer" loading="lazy"
+                                src={ (root) "explorer.html" (shown) } {}
+                        }
+                    }
+                    script { (PreEscaped(SCRIPT)) }
+                }
             }
-            body class=[explorer.map(|_| "lesson")] {
-                main { (content) }
-                @if let Some(address) = explorer {
-                    iframe name="explorer" title="Sixfold explorer" src=(address) {}
+        };
+        page.into_string()
+    }
+
+    /// Returns the links at the top of a page. `root` leads from the page to the folder of the site.
+    fn header(&self, root: &str) -> Markup {
+        let is_guide = matches!(self.place, Place::Guide);
+        let current = |is_here: bool| is_here.then_some("true");
+        html! {
+            header {
+                b { "Sixfold" }
+                nav aria-label="Site" {
+                    a href={ (root) "index.html" } aria-current=[current(is_guide)] { "Guide" }
+                    a href={ (root) "lessons/index.html" } aria-current=[current(!is_guide)] { "Lessons" }
+                    a href={ (root) "explorer.html" } { "Explorer" }
                 }
             }
         }
-    };
-    page.into_string()
-}
-
-/// Returns the names of all pages of Markdown, as links have them after the last `/`.
-fn pages() -> BTreeSet<String> {
-    let names = CHAPTERS.iter().chain(&LESSONS).map(|(name, _)| *name);
-    names
-        .chain(["README"])
-        .map(|name| format!("{name}.md"))
-        .collect()
-}
-
-fn file_of(name: &str) -> String {
-    match name {
-        "README" => "index.html".to_owned(),
-        _ => format!("{name}.html"),
     }
 }
 
-/// Turns Markdown into HTML. A link to a page that the site does not have becomes plain text.
-fn to_html(markdown: &str, pages: &BTreeSet<String>) -> Markup {
-    let mut is_left_out = false;
-    let events: Vec<Event<'_>> = Parser::new_ext(markdown, Options::ENABLE_TABLES).collect();
-    let shown = events
-        .iter()
-        .enumerate()
-        .filter_map(|(i, event)| match event {
-            Event::Start(Tag::Heading { level, .. }) => Some(Event::Start(Tag::Heading {
-                level: *level,
-                id: Some(anchor(&events[i + 1..]).into()),
-                classes: Vec::new(),
-                attrs: Vec::new(),
-            })),
-            Event::Start(Tag::Link { dest_url, .. }) => {
-                let address = target(dest_url, pages);
-                is_left_out = address.is_none();
-                Some(Event::Start(Tag::Link {
-                    link_type: LinkType::Inline,
-                    dest_url: CowStr::from(address?),
-                    title: CowStr::from(""),
-                    id: CowStr::from(""),
-                }))
-            }
-            Event::End(TagEnd::Link) if is_left_out => None,
-            event => Some(event.clone()),
-        });
-    let mut content = String::new();
-    pulldown_cmark::html::push_html(&mut content, shown);
-    PreEscaped(content)
-}
-
-/// Returns the anchor of the heading whose content `events` begin with, as repositories on the web make it.
-fn anchor(events: &[Event<'_>]) -> String {
-    let content = events
-        .iter()
-        .take_while(|event| !matches!(event, Event::End(TagEnd::Heading(_))));
-    let text = content.filter_map(|event| match event {
-        Event::Text(text) | Event::Code(text) => Some(text.to_lowercase()),
-        _ => None,
-    });
-    let kept = |letter: &char| letter.is_alphanumeric() || [' ', '-', '_'].contains(letter);
-    let text: String = text.collect();
-    text.chars()
-        .filter(kept)
-        .collect::<String>()
-        .replace(' ', "-")
-}
-
-/// Returns the address on the site of a page of Markdown, or `None` if the site does not have the page.
-fn target(link: &str, pages: &BTreeSet<String>) -> Option<String> {
-    if link.starts_with('#') || link.contains("://") {
-        return Some(link.to_owned());
+fn footer(root: &str) -> Markup {
+    html! {
+        footer {
+            "Sixfold " (env!("CARGO_PKG_VERSION")) " · licence: "
+            a href={ (root) "LICENSE-MIT.txt" } { "MIT" } " or "
+            a href={ (root) "LICENSE-APACHE.txt" } { "Apache 2.0" }
+        }
     }
-    let (path, anchor) = link
-        .split_once('#')
-        .map_or((link, None), |(path, anchor)| (path, Some(anchor)));
-    let (folder, file) = path
-        .rsplit_once('/')
-        .map_or(("", path), |(folder, file)| (folder, file));
-    let is_near = ["", "lessons", ".."].contains(&folder);
-    if !pages.contains(file) || !is_near || (folder, file) == ("..", "README.md") {
-        return None;
-    }
-    let mut address = String::new();
-    if !folder.is_empty() {
-        address = format!("{folder}/");
-    }
-    address += &file_of(file.trim_end_matches(".md"));
-    if let Some(anchor) = anchor {
-        address = format!("{address}#{anchor}");
-    }
-    Some(address)
 }
 
 #[cfg(test)]
@@ -225,38 +231,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_lead_to_pages_of_the_site_only() {
-        let pages = pages();
-        let expected = [
-            (
-                "half-edge.md#the-tables-of-a-cube",
-                Some("half-edge.html#the-tables-of-a-cube"),
-            ),
-            ("lessons/README.md", Some("lessons/index.html")),
-            ("../study.md", Some("../study.html")),
-            ("your-own-program.md", None),
-            ("../README.md", None),
-            ("../editing/README.md", None),
-            ("../../README.md#install", None),
-            ("#here", Some("#here")),
-        ];
-        for (link, address) in expected {
-            assert_eq!(target(link, &pages).as_deref(), address, "{link}");
+    fn the_list_of_lessons_has_sheets_and_no_solutions() {
+        let list = list_of_lessons().into_string();
+        assert!(list.contains("<a href=\"lab.html\">"), "{list}");
+        assert!(!list.contains("solutions"), "{list}");
+    }
+
+    #[test]
+    fn each_lesson_names_its_questions() {
+        for (name, source) in LESSONS {
+            let count = source.lines().filter(|line| line.starts_with("! ")).count();
+            let html = progress(name).into_string();
+            let (_, ids) = html.split_once("data-questions=\"").expect("questions");
+            let ids = ids.split('"').next().unwrap_or_default();
+            assert!(
+                !ids.is_empty() && ids.split(' ').count() <= count,
+                "{name}: {html}"
+            );
         }
-        let html = to_html(
-            "[a](b.md) and [c](study.md)\n\n| x |\n|---|\n| <y> |\n",
-            &pages,
-        )
-        .into_string();
-        assert!(
-            html.starts_with("<p>a and <a href=\"study.html\">c</a></p>"),
-            "{html}"
-        );
-        assert!(html.contains("<table>"), "{html}");
-        let html = to_html("## The tables of `v`, twice\n", &pages).into_string();
-        assert!(
-            html.starts_with("<h2 id=\"the-tables-of-v-twice\">"),
-            "{html}"
-        );
+    }
+
+    #[test]
+    fn the_script_reads_what_the_explorer_keeps() {
+        let store = include_str!("../explore/store.js");
+        assert!(store.contains("const KEY = \"sixfold-explorer\";"));
+        assert!(SCRIPT.contains("localStorage.getItem(\"sixfold-explorer\")"));
     }
 }
