@@ -22,6 +22,21 @@ from browser import Browser
 STRUCTURES = ["polygon-soup", "indexed-face-set", "face-vertex", "winged-edge", "half-edge", "corner-table"]
 SIZES = {"laptop": (1440, 900), "projector": (1024, 768), "beside": (864, 768), "tablet": (821, 1000), "telephone": (390, 844)}
 MAX_BYTES = 3_000_000
+CUBE = """v 0 0 0
+v 0 0 1
+v 0 1 0
+v 0 1 1
+v 1 0 0
+v 1 0 1
+v 1 1 0
+v 1 1 1
+f 1 2 4 3
+f 5 7 8 6
+f 1 5 6 2
+f 3 4 8 7
+f 1 3 7 5
+f 2 6 8 4
+"""
 
 # The counters and the results of each structure.
 SHOWN = """
@@ -796,6 +811,61 @@ def check_measurements(page, path):
     check(heads == ["structure", "VV", "FF"], heads)
 
 
+def check_memory(page, path):
+    """The bytes, the formulas and the tables of each structure are those of the native engine."""
+    page.open(path)
+    for name, mesh in (("octahedron", {"shape": {"name": "octahedron"}}), ("cube.obj", {"file": {"name": "cube.obj", "text": CUBE}})):
+        if "file" in mesh:
+            drop(page, name, CUBE.encode())
+        page.click("[data-tab=measure]")
+        native = page.native(mesh=mesh, ask="memory")
+        check(native["answers"], native)
+        for answer in native["answers"]:
+            row = f"#memory [data-structure={answer['backend']}]"
+            check(f"{answer['bytes']} bytes, " in page.text(f"{row} .size"), page.text(row), answer)
+            formula, numbers = page.text(f"{row} .formula").split(" = ")
+            check(formula == answer["formula"], formula, answer)
+            check(sum(math.prod(int(factor) for factor in term.split(" · ")) for term in numbers.split(" + ")) == answer["bytes"], numbers, answer)
+            page.click(f"{row} summary")
+            tables = page.browser.run("""return [...document.querySelectorAll(arguments[0])].map(row =>
+                [row.dataset.table, ...[1, 2, 3].map(i => row.cells[i].firstChild.textContent.replace(/.* = /, ''))])""", f"{row} tr[data-table]")
+            check(tables == [[one["table"]] + [str(one[key]) for key in ("rows", "row_bytes", "bytes")] for one in answer["tables"]], tables, answer)
+        for refused in native["refused"]:
+            check(page.text(f"#memory [data-structure={refused['backend']}]") == refused["reason"], refused)
+
+
+def check_weld(page, path):
+    """The corners of the soup become the vertices that the native engine says, at each tolerance."""
+    page.open(path)
+    drop(page, "cube.obj", CUBE.encode())
+    page.click("[data-tab=check]")
+    mesh = {"file": {"name": "cube.obj", "text": CUBE}}
+    read = """return { tolerance: Number(document.getElementById('tolerance-value').textContent), counts: document.querySelector('#weld-counts').textContent,
+        map: [...document.querySelectorAll('.weld-map line')].map(line => Number(line.dataset.to)) }"""
+    for step in (0, 1, 25, 50):
+        page.type("#tolerance", str(step)) if step else None
+        page.browser.run("document.getElementById('tolerance').dispatchEvent(new Event('input'))")
+        shown = page.browser.run(read)
+        check((shown["tolerance"] == 0) == (step == 0), shown)
+        native = page.native(mesh=mesh, ask={"weld": {"tolerance": shown["tolerance"]}})["weld"]
+        check(shown["counts"].startswith(f"{native['corners']} corners → {native['vertices']} vertices"), shown, native)
+        check(len(shown["map"]) >= 12 and shown["map"] == native["map"][:len(shown["map"])], shown, native)
+    # Vertices that are closer than the tolerance become one.
+    near = CUBE.replace("v 1 1 1", "v 0.05 0.05 0.05")
+    drop(page, "near.obj", near.encode())
+    page.click("[data-tab=check]")
+    page.type("#tolerance", "50")
+    page.browser.run("document.getElementById('tolerance').dispatchEvent(new Event('input'))")
+    shown = page.browser.run(read)
+    native = page.native(mesh={"file": {"name": "near.obj", "text": near}}, ask={"weld": {"tolerance": shown["tolerance"]}})["weld"]
+    check(native["vertices"] == 7 and "8 different vertices become 7" in shown["counts"], native, shown)
+    check(f"{native['vertices']} vertices" in shown["counts"] and f"{native['faces_changed']} face" in shown["counts"], shown, native)
+    page.browser.run("document.querySelector('.weld-map [data-vertex=\"0\"]').dispatchEvent(new MouseEvent('click', { bubbles: true }))")
+    page.settle()
+    chosen = page.browser.run("return [...document.querySelectorAll('.weld-map line.chosen')].map(line => Number(line.dataset.corner))")
+    check(chosen == [c for c, v in enumerate(native["map"]) if v == 0], chosen, native)
+
+
 def check_levels(page, path):
     page.open(path)
     page.click("[data-tab=subdivide]")
@@ -1172,7 +1242,7 @@ def main():
             page = Page(browser, sixfold, respond)
             browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
             for part in (check_queries, check_shown, check_cards, check_turns, check_arrows, check_elements, check_primary, check_pointer, check_edits, check_edit_steps, check_refusals, check_remedies, check_files, check_failure, check_links, check_predictions,
-                         check_walks, check_measurements, check_levels, check_regularity, check_layout, check_contrast, check_lessons):
+                         check_walks, check_measurements, check_memory, check_weld, check_levels, check_regularity, check_layout, check_contrast, check_lessons):
                 part(page, path)
                 check_quiet(browser)
             check_sizes(page, path, folder)

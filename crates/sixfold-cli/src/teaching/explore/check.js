@@ -10,7 +10,8 @@ export async function check(engine, shown) {
   if (!diagnoses.has(subject)) {
     const { verdicts, faults } = await engine.ask(subject, { ask: "verdicts" });
     const { facts } = await engine.ask(subject, { ask: "facts" });
-    diagnoses.set(subject, { verdicts, faults, facts });
+    const weld = await askWeld(engine, subject, 0);
+    diagnoses.set(subject, { verdicts, faults, facts, tolerance: 0, weld });
   }
   shown.checked = diagnoses.get(subject);
 }
@@ -36,7 +37,8 @@ export function checkPanel(explorer) {
       el("section", {}, el("h3", {}, faults.length ? "Faults and boundaries" : "No faults"),
       el("ul", { id: "faults" }, faults.map((fault) => faultItem(explorer, fault))),
       loopList(explorer),
-      factsList(facts))),
+      factsList(facts)),
+    weldPart(explorer)),
   ];
 }
 
@@ -72,6 +74,99 @@ function factsList(facts) {
   if (Number.isInteger(facts.genus)) rows.push(["genus", facts.genus]);
   return el("div", {}, el("h3", {}, "The mesh"), el("table", { class: "list", id: "facts" },
     rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, name), el("td", {}, String(value))))));
+}
+
+async function askWeld(engine, subject, tolerance) {
+  return (await engine.ask(subject, { ask: { weld: { tolerance } } })).weld;
+}
+
+// The largest tolerance of the slider, as a part of the radius of the mesh, and its steps: each ten of them are a tenth.
+const MOST_TOLERANCE = 0.1;
+const TOLERANCE_STEPS = 50;
+// Maximum number of corners in the drawing, and the width of one.
+const MOST_DRAWN = 40;
+const CORNER_WIDTH = 24;
+
+// The corners of all faces as a polygon soup stores them, and the vertices that they become.
+function weldPart(explorer) {
+  const { checked, subject, engine, model } = explorer;
+  const toleranceAt = (step) => (step === 0 ? 0 : Number((MOST_TOLERANCE * model.radius * 10 ** ((step - TOLERANCE_STEPS) / 10)).toPrecision(2)));
+  const stepOf = (tolerance) => (tolerance === 0 ? 0 : TOLERANCE_STEPS + Math.round(10 * Math.log10(tolerance / (MOST_TOLERANCE * model.radius))));
+  const value = el("output", { id: "tolerance-value" }, String(checked.tolerance));
+  const slider = el("input", { type: "range", id: "tolerance", min: "0", max: String(TOLERANCE_STEPS), value: String(stepOf(checked.tolerance)), "aria-label": "Tolerance" });
+  const result = el("div", {}, weldResult(explorer));
+  slider.addEventListener("input", () => { value.textContent = String(toleranceAt(Number(slider.value))); });
+  slider.addEventListener("change", () => explorer.run(async () => {
+    const tolerance = toleranceAt(Number(slider.value));
+    const weld = await askWeld(engine, subject, tolerance);
+    Object.assign(checked, { tolerance, weld });
+    result.replaceChildren(...weldResult(explorer));
+    explorer.mark([]);
+  }));
+  return el("section", { id: "weld" },
+    el("h3", {}, "The soup as stored and welded"),
+    el("p", { class: "hint" }, "A polygon soup stores the position of each corner of each face. Welding makes one vertex of the corners whose distance is at most the tolerance; 0 welds equal positions."),
+    el("p", { class: "buttons" }, el("label", {}, "tolerance ", slider), value, el("span", { class: "hint" }, "units of the coordinates")),
+    result);
+}
+
+// What welding does, as sentences and as a drawing.
+function weldResult(explorer) {
+  const { checked: { weld }, model } = explorer;
+  const own = new Set(model.faces.flatMap((face) => face ?? []));
+  const joined = own.size - weld.vertices;
+  const changed = `${count(weld.faces_changed, "face")} ${weld.faces_changed === 1 ? "changes" : "change"} (fewer corners, or lost)`;
+  return [
+    el("p", { id: "weld-counts" }, el("b", {}, `${count(weld.corners, "corner")} → ${count(weld.vertices, "vertex")}`),
+      joined > 0 ? el("span", { class: "refusal" }, `: ${own.size.toLocaleString("en")} different vertices become ${weld.vertices.toLocaleString("en")}, and ${changed}; a corner moves by up to ${Number(weld.largest_shift.toPrecision(3))}`)
+        : `, and ${changed}`),
+    weldDrawing(explorer, weld.map),
+  ];
+}
+
+// Corners above, vertices below, and a line from each corner to its vertex. A vertex that is clicked marks its corners.
+function weldDrawing(explorer, map) {
+  const ends = explorer.model.faces.flatMap((face) => face ?? []);
+  const room = Math.floor(((document.getElementById("panel")?.clientWidth || 600) - 40) / CORNER_WIDTH);
+  const shown = map.slice(0, Math.min(MOST_DRAWN, Math.max(6, room)));
+  const cornersOf = new Map();
+  map.forEach((vertex, c) => cornersOf.set(vertex, [...cornersOf.get(vertex) ?? [], c]));
+  const vertices = [...new Set(shown)];
+  const width = Math.max(shown.length, 12) * CORNER_WIDTH;
+  const [top, bottom] = [16, 112];
+  const xOf = (i, length) => ((i + 0.5) * width) / length;
+  // Markup makes elements of SVG without the address of their namespace.
+  const frame = el("div", { class: "weld-map" });
+  frame.innerHTML = "<svg></svg>";
+  const svg = frame.firstChild;
+  const draw = (tag, attributes, ...children) => {
+    const element = document.createElementNS(svg.namespaceURI, tag);
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+    element.append(...children);
+    return element;
+  };
+  svg.setAttribute("viewBox", `0 0 ${width} ${bottom + 18}`);
+  svg.style.maxWidth = `${width * 1.3}px`;
+  svg.append(...shown.map((vertex, c) => draw("line", { "data-corner": c, "data-to": vertex, x1: xOf(c, shown.length), y1: top + 4, x2: xOf(vertices.indexOf(vertex), vertices.length), y2: bottom - 12 })));
+  svg.append(...shown.map((_, c) => draw("text", { x: xOf(c, shown.length), y: top - 2 }, `c${c}`)));
+  svg.append(...vertices.map((vertex, i) => {
+    const corners = cornersOf.get(vertex);
+    const names = [...new Set(corners.map((c) => `v${ends[c]}`))];
+    const label = names.length > 1 ? `${names[0]}…` : names[0];
+    const choose = () => {
+      for (const one of svg.querySelectorAll("[data-vertex], [data-to]")) one.classList.toggle("chosen", (one.dataset.vertex ?? one.dataset.to) === String(vertex));
+      explorer.run(() => explorer.mark(corners.map((c) => `c${c}`)));
+    };
+    const title = `${names.join(", ")}: ${count(corners.length, "corner")}, ${corners.slice(0, 30).map((c) => `c${c}`).join(", ")}`;
+    const one = draw("g", { role: "button", tabindex: "0", "data-vertex": vertex, "aria-label": title },
+      draw("title", {}, title), draw("circle", { cx: xOf(i, vertices.length), cy: bottom - 8, r: 5 }), draw("text", { x: xOf(i, vertices.length), y: bottom + 12 }, label));
+    one.addEventListener("click", choose);
+    one.addEventListener("keydown", (event) => event.key === "Enter" && choose());
+    return one;
+  }));
+  const left = explorer.checked.weld.corners - shown.length;
+  return el("div", {}, frame, el("p", { class: "hint" }, "Corners as the soup stores them, above, and their vertices. Click a vertex to mark its corners on the mesh.",
+    left > 0 ? ` ${count(left, "more corner")} ${left === 1 ? "is" : "are"} not drawn.` : ""));
 }
 
 async function askRepair(explorer, structure) {

@@ -3,6 +3,7 @@
 import { check } from "./check.js";
 import { editSteps } from "./edit-steps.js";
 import { EngineFailure } from "./engine.js";
+import { askMemory } from "./measure.js";
 import { Model, edgeName, parseName } from "./mesh.js";
 import { relationFor } from "./query.js";
 import { defaultView, groups, meshState, pastOf, withEdit } from "./state.js";
@@ -197,6 +198,7 @@ export class Explorer {
     shown.subject = subjectOf(state, base.geometry);
     if (view.tab === "subdivide") await refine(this.engine, shown);
     if (view.tab === "check") await check(this.engine, shown);
+    if (view.tab === "measure") await askMemory(this.engine, shown);
     await this.largeTables(shown, asked);
     return shown;
   }

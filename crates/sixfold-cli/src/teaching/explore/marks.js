@@ -23,7 +23,7 @@ export function marks(explorer, rowsOf, colour) {
   if (view.tab === "subdivide" && view.level > 0) return stencilMarks(explorer, colour);
   const list = [];
   const add = (name, shade, label = name) => {
-    const place = model.place(name);
+    const place = model.place(name) ?? cornerOfSoup(model, name);
     if (place) list.push({ place, colour: shade, label, style: styleOf(place) });
   };
   if (view.tab === "edit" && lastEdit) {
@@ -40,6 +40,18 @@ export function marks(explorer, rowsOf, colour) {
     if (place) list.push({ place, colour: colour("--chosen"), label: view.element + (view.tab === "subdivide" ? levelMark(0) : ""), style: place.kind === "vertex" ? "ring" : styleOf(place), isAtHand: !list.some((one) => one.isAtHand) });
   }
   return list;
+}
+
+// The corner of a number such as c5: a polygon soup has those of one face after those of another. Null if it is none.
+function cornerOfSoup(model, name) {
+  if (!/^c\d+$/.test(name)) return null;
+  let left = Number(name.slice(1));
+  for (const [f, face] of model.faces.entries()) {
+    if (!face) continue;
+    if (left < face.length) return model.corner(f, face[left]);
+    left -= face.length;
+  }
+  return null;
 }
 
 // The mesh that is drawn: that of a level, or the one before an edit while its writes are shown.
