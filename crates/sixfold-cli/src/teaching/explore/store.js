@@ -23,6 +23,10 @@ export class Store {
       clearTimeout(this.waiting);
       this.waiting = setTimeout(() => this.save(), WAIT_MS);
     });
+    // Another page of the same folder has kept answers: they are taken over, so that neither page loses those of the other.
+    window.addEventListener("storage", (event) => {
+      if (event.key === KEY) Object.assign(this.explorer.course, this.read().course);
+    });
   }
 
   // What was kept: { course, state }, the state as text, or null if this page shows another mesh by itself.

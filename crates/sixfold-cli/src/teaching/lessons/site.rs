@@ -24,11 +24,11 @@ const SCRIPT: &str = include_str!("site.js");
 const LICENCES: [(&str, &str); 2] = [
     (
         "LICENSE-MIT.txt",
-        include_str!("../../../../../LICENSE-MIT"),
+        include_str!("../../../LICENSE-MIT"),
     ),
     (
         "LICENSE-APACHE.txt",
-        include_str!("../../../../../LICENSE-APACHE"),
+        include_str!("../../../LICENSE-APACHE"),
     ),
 ];
 
