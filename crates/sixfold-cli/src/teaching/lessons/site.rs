@@ -22,10 +22,7 @@ const SCRIPT: &str = include_str!("site.js");
 
 /// The texts of the licences, as files of the site.
 const LICENCES: [(&str, &str); 2] = [
-    (
-        "LICENSE-MIT.txt",
-        include_str!("../../../LICENSE-MIT"),
-    ),
+    ("LICENSE-MIT.txt", include_str!("../../../LICENSE-MIT")),
     (
         "LICENSE-APACHE.txt",
         include_str!("../../../LICENSE-APACHE"),
