@@ -109,7 +109,9 @@ class Page:
         for row in find(body, "tr"):
             name = row[1]["data-operation"]
             cells = [Cell(cell) for cell in row[2][1:]]
+            # Another one may have 1.00 in three digits: the fastest has no interval.
             best = [cell for cell in cells if cell.ratio == 1 and not cell.is_bound]
+            best.sort(key=lambda cell: (cell.exact, cell.ends != ""))
             for place, (backend, cell) in enumerate(zip(backends, cells)):
                 where = f"{name} on {backend}"
                 self.check_cell(where, cell, best)
@@ -206,6 +208,7 @@ class Cell:
         has_ratio = shown.endswith("×")
         self.figure = shown.lstrip("~≥ ").removesuffix(" ×") if has_ratio else None
         self.ratio = number(self.figure) if has_ratio else None
+        self.exact = float(data.get("data-ratio") or "inf")
         is_best = any(True for _ in find(element, "b"))
         self.mark = "◐" if words else "●" if is_best else ""
 
